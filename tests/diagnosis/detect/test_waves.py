@@ -24,7 +24,6 @@ DETENT = {"azimuth.detent": {"amplitude": 0.001, "waves": 9.0, "phase": -1.0}}
 PERIODIC = {"elevation.periodic_torque": {"amplitude": 0.001, "rate": 5.0, "phase": 2.0}}
 
 
-# The third is fitted below from where it begins.
 @pytest.mark.parametrize("truth", sampled([CYCLIC, DETENT, PERIODIC], keep=[CYCLIC]))
 def test_a_sine_begins_near_its_waves(plant: BoundPlant, fly: Fly, truth) -> None:
     # A start must be within a sixth of a wave over the whole way, which is 1 rad, or 15 s to either side: 1 rad a rad, 0.07 rad/s.
@@ -67,6 +66,7 @@ def swung(log: RunLog, rate_rad_s: float) -> float:
     return float(max(shares))
 
 
+@pytest.mark.soak
 def test_a_sine_explains_more_than_a_springy_part(plant: BoundPlant, fly: Fly) -> None:
     # Both are fitted from where their score tests begin.
     case = make_case(effect_library(plant), [fly(63, PERIODIC, rig_seed=63)])

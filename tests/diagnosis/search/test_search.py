@@ -74,6 +74,7 @@ def test_an_effect_is_exchanged_for_its_like(sprung_and_late: tuple[Case, Fit]) 
     assert best.evidence > wrong.evidence + 20.0
 
 
+@pytest.mark.soak
 def test_the_twin_of_the_best_is_tried_in_its_place(plant: BoundPlant, fly: Fly) -> None:
     # A lag of the elevation's sensor, of which the search so far knows no more than the delay that is alike.
     case = make_case(effect_library(plant), [fly(44, {"psi_sensor.lag": {"tau": 0.06}}, air=False)])
