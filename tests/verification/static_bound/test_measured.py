@@ -34,8 +34,9 @@ def nearly_cancelling(rng: np.random.Generator, pairs: Words) -> Words:
     return pairs
 
 
-# How far the bound may lie above the dearest of 1 000 inputs: paths that exclude each other beyond what sets of words can show.
-LAW_CLOSENESS = 1.35
+# How far the bound may lie above the dearest of 1 000 inputs, by the degree of the polynomials: paths that exclude each other beyond
+# what sets of words can show. Each degree adds sums and products of coefficients and an angle, which no input makes dear (1.34, 1.45).
+LAW_CLOSENESS = {1: 1.35, 3: 1.5}
 MOST_CYCLES = 14_000  # in float32, whatever the bits
 CLOSENESS = {"sum": 1.2, "product": 1.2, "ratio": 1.2, "less": 1.1, "whole": 1.1, "as_float": 1.1}
 
@@ -91,7 +92,7 @@ def test_a_search_for_the_dearest_step_stays_below_the_bound() -> None:
     assert dearest(stimuli(table, "float32", 4_000), elf, 100_000) <= static_bound(elf, "law_step").cycles_bound
 
 
-@pytest.mark.parametrize("degree", sampled([1, 3], keep=[1]))
+@pytest.mark.parametrize("degree", sampled(LAW_CLOSENESS, keep=[1]))
 def test_one_step_of_the_law_never_costs_more_than_its_bound(degree: int) -> None:
     table = ce150_table(degree)
     elf = alone(generate_law(table))
@@ -100,6 +101,6 @@ def test_one_step_of_the_law_never_costs_more_than_its_bound(degree: int) -> Non
         states = law.start(stimulus.angles) if stimulus.states is None else stimulus.states
         law.run(states, stimulus.inputs)
     assert bound.cycles_bound < MOST_CYCLES
-    assert law.cycles_max <= bound.cycles_bound <= LAW_CLOSENESS * law.cycles_max
+    assert law.cycles_max <= bound.cycles_bound <= LAW_CLOSENESS[degree] * law.cycles_max
     assert law.stack_bytes == bound.stack_bytes
     assert sum(share.cycles for share in bound.path) == bound.cycles_bound
