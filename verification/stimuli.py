@@ -24,6 +24,9 @@ SPECIAL_BITS = np.array(
 )
 
 
+ARRIVALS = "arrivals"  # the stimulus of filters that are all but there
+
+
 @dataclass(frozen=True)
 class Stimulus:
     """Lanes of the law to be stepped together, all numbers as bits.
@@ -53,7 +56,7 @@ def standard_stimuli(
     rng = np.random.default_rng(seed)
     share = -(-steps // 5)
     lanes = -(-share // 250)
-    arrivals = -(-lanes // 20)
+    arrivals = max(2, -(-lanes // 20))  # from either side
     return (
         reference_jumps(table, rng, 250, lanes),
         saturating(table, rng, 250, lanes),
@@ -126,14 +129,15 @@ def from_random_bits(table: FlownTable, rng: np.random.Generator, lanes: int, wo
 
 
 def arriving(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
-    """References up to 60 last places from where the filters rest: too near for a rounded step."""
+    """References up to 60 last places from where the filters rest, by turns above and below: too near for a rounded step."""
     starts = np.stack(
         [rng.uniform(axis.reference_min_rad, axis.reference_max_rad, lanes) for axis in table.axes],
         axis=-1,
     ).astype(np.float32)
-    references = starts + rng.integers(-60, 61, starts.shape).astype(np.float32) * np.abs(np.spacing(starts))
+    side = 1 - 2 * (np.add.outer(np.arange(lanes), np.arange(len(table.axes))) % 2)
+    references = starts + (side * rng.integers(1, 61, starts.shape)).astype(np.float32) * np.abs(np.spacing(starts))
     inputs = np.repeat(np.concatenate([references, starts], axis=-1)[np.newaxis], steps, axis=0)
-    return Stimulus("arrivals", _bits(starts), _bits(inputs))
+    return Stimulus(ARRIVALS, _bits(starts), _bits(inputs))
 
 
 def replayed(name: str, *series_rad: Numbers) -> Stimulus:

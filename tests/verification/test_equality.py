@@ -18,6 +18,7 @@ from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.equality import EqualityResult, compare, differing
 from verification.host_law import HostLaw, host_law
 from verification.stimuli import (
+    ARRIVALS,
     Stimulus,
     from_random_bits,
     reference_jumps,
@@ -60,6 +61,12 @@ def test_the_stimuli_reach_limits_special_numbers_and_broken_states() -> None:
     magnitude = np.abs(inputs)
     # Two of the 20 special numbers are infinite: one in 300 of 80 000 inputs and one in 160 of 39 000 are 510, with a deviation of 22.
     assert min(np.isnan(inputs).sum(), np.isinf(inputs).sum(), ((magnitude > 0) & (magnitude < 1e-38)).sum()) > 400
+
+
+def test_filters_arrive_from_either_side_however_few_the_lanes() -> None:
+    (arrivals,) = (stimulus for stimulus in standard_stimuli(ce150_table(), 100) if stimulus.name == ARRIVALS)
+    references, angles = np.split(arrivals.inputs.view(np.float32)[0], 2, axis=-1)
+    assert np.array_equal(np.sign(references - angles), [[1, -1], [-1, 1]])
 
 
 def test_the_same_seed_gives_the_same_stimuli_and_sequences_set_no_state() -> None:

@@ -11,12 +11,13 @@ from codegen.law import generate_law
 from codegen.twin import Float32Twin
 from records.table import ControllerTable
 from tests.law_tables import ce150_table, dense_table, tapered_table
+from tests.plants import stated_table
 from tests.soak import SOAK, sampled
 from verification.fixed_stimuli import EDGES
 from verification.host_law import HostLaw
 from verification.proofs.mutation import law as mutation_of_c
 from verification.proofs.mutation import proof as mutation
-from verification.proofs.mutation.judge import stepped, stimuli_of
+from verification.proofs.mutation.judge import Behaviour, stepped, stimuli_of
 from verification.proofs.mutation.law import judged_c
 from verification.proofs.mutation.mutants_c import MutatedC, mutated_c
 from verification.proofs.mutation.mutants_python import mutated_twin, python_mutants
@@ -78,6 +79,23 @@ def test_the_score_of_each_group_is_above_its_bound_on_a_table_in_which_everythi
     score = score_of(replace(subject(arithmetic), everything=SOAK))
     assert score.tried >= least
     assert score.share >= LEAST_SCORE, score.survivors
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("arithmetic", ["float32", "fixed"])
+def test_the_score_of_each_group_is_above_its_bound_on_the_law_of_one_loop(arithmetic: str) -> None:
+    """The references of the arm are all positive, its voltages too, and its schedule's range does not hold zero."""
+    table = stated_table("aeroshield")
+    one_loop = Subject(table, generate_law(table, arithmetic), b"", arithmetic=arithmetic, everything=True)
+    for score in (score_of(one_loop) for score_of in (c_score, table_score, twin_score)):
+        assert score.share >= LEAST_SCORE, score.survivors
+
+
+def test_duties_differ_though_their_words_would_be_no_number_each() -> None:
+    # Truth: -3200 and -3201 are two duties; read as float32 both are NaN, which counts as equal to NaN among a law's numbers.
+    one, other = (np.array([duty], np.int32).view(np.uint32) for duty in (-3200, -3201))
+    assert Behaviour((), True, (one,)).differs(Behaviour((), True, (other,)))
+    assert not Behaviour((one,), True).differs(Behaviour((other,), True))
 
 
 def test_with_outputs_alone_of_a_law_at_rest_most_mutants_survive() -> None:

@@ -12,7 +12,7 @@ from records.table import ControllerTable
 from verification.equality import BatchStepper, differing
 from verification.fixed_stimuli import EDGES, SPECIAL_WORDS, fixed_stimuli
 from verification.host_law import HostLaw
-from verification.stimuli import SPECIAL_BITS, Stimulus, standard_stimuli
+from verification.stimuli import ARRIVALS, SPECIAL_BITS, Stimulus, standard_stimuli
 
 Bits = NDArray[Any]
 
@@ -26,39 +26,44 @@ COUNTS = np.array(
 
 @dataclass(frozen=True)
 class Behaviour:
-    """Arrays of bits that two laws can be told apart by, in a fixed order."""
+    """Arrays of bits that two laws can be told apart by, in a fixed order: the law's numbers, and integers such as duties."""
 
-    arrays: tuple[Bits, ...]
+    numbers: tuple[Bits, ...]
     is_float: bool
+    integers: tuple[Bits, ...] = ()
 
     def differs(self, other: "Behaviour") -> bool:
-        """Whether any bit differs, NaN counting as equal to NaN."""
-        return any(differing(a, b, self.is_float).any() for a, b in zip(self.arrays, other.arrays, strict=True))
+        """Whether any bit differs, of the law's numbers NaN counting as equal to NaN: a small negative integer has the bits of one."""
+        numbers = zip(self.numbers, other.numbers, strict=True)
+        integers = zip(self.integers, other.integers, strict=True)
+        return any(differing(a, b, self.is_float).any() for a, b in numbers) or any((a != b).any() for a, b in integers)
 
 
 def stimuli_of(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[Stimulus]:
-    """The stimuli of the equality checks, `steps` steps of them, those from edges also lane by lane, and one with every word missing.
+    """The stimuli of the equality checks, `steps` steps of them, those from edges also lane by lane, one arrival alone, and one with
+    every word missing, in one lane and in two.
 
     A lane alone runs on single numbers, for which the twin has decisions of their own.
     """
     stimuli = _STIMULI[arithmetic](table, steps)
     alone = [lane for stimulus in stimuli if stimulus.name == EDGES for lane in _lane_by_lane(stimulus)]
-    return (*stimuli, *alone, _all_missing(table, int(_SPECIAL[arithmetic][0])))
+    alone += [next(_lane_by_lane(stimulus)) for stimulus in stimuli if stimulus.name == ARRIVALS]
+    word = int(_SPECIAL[arithmetic][0])
+    return (*stimuli, *alone, *(_all_missing(table, word, lanes) for lanes in (1, 2)))
 
 
 def _lane_by_lane(stimulus: Stimulus) -> Iterator[Stimulus]:
     states = stimulus.states
     for lane in range(len(stimulus.angles)):
         one = slice(lane, lane + 1)
-        yield Stimulus(
-            stimulus.name, stimulus.angles[one], stimulus.inputs[:, one], None if states is None else states[one]
-        )
+        inputs = np.ascontiguousarray(stimulus.inputs[:, one])
+        yield Stimulus(stimulus.name, stimulus.angles[one], inputs, None if states is None else states[one])
 
 
-def _all_missing(table: ControllerTable, word: int) -> Stimulus:
+def _all_missing(table: ControllerTable, word: int, lanes: int) -> Stimulus:
     """Three steps from a state and inputs of nothing but this word."""
     loops = len(table.loops)
-    shapes = ((1, loops), (3, 1, 2 * loops), (1, state_words(table)))
+    shapes = ((lanes, loops), (3, lanes, 2 * loops), (lanes, state_words(table)))
     filled = [np.full(shape, word, dtype=np.uint32) for shape in shapes]
     return Stimulus("nothing known", *filled)
 
@@ -76,12 +81,13 @@ def stepped(law: BatchStepper, stimuli: Sequence[Stimulus]) -> Behaviour:
 def whole_behaviour(law: HostLaw, stimuli: Sequence[Stimulus]) -> Behaviour:
     """The same with duties of the outputs and of special words, angles, and the self-test's verdict."""
     seen = stepped(law, stimuli)
-    special, loops = _SPECIAL[law.arithmetic], seen.arrays[2].shape[-1]
-    outputs = np.concatenate([array.reshape(-1, loops) for array in seen.arrays[2::3]])
+    special, loops = _SPECIAL[law.arithmetic], seen.numbers[2].shape[-1]
+    outputs = np.concatenate([array.reshape(-1, loops) for array in seen.numbers[2::3]])
     words = (outputs, _of_loops(np.stack([special, special[::-1]], axis=-1), loops))
     duties = [law.duties(np.ascontiguousarray(each)).view(np.uint32) for each in words]
     verdict = np.array([law.self_test()], dtype=np.uint32)
-    return Behaviour((*seen.arrays, *duties, law.angles_from_counts(_of_loops(COUNTS, loops)), verdict), seen.is_float)
+    angles = law.angles_from_counts(_of_loops(COUNTS, loops))
+    return Behaviour((*seen.numbers, angles), seen.is_float, (*duties, verdict))
 
 
 def _of_loops(pairs: Bits, loops: int) -> Bits:
