@@ -50,6 +50,7 @@ def digests(kernels: str) -> str:
     return done.stdout
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="kernels are named for x86-64")
 @pytest.mark.parametrize("kernels", sampled(KERNELS, keep=["Prescott"]))
 def test_other_kernels_make_the_same_table(kernels: str) -> None:

@@ -81,6 +81,7 @@ def test_commands_of_a_rig_with_dry_friction_that_its_plant_file_lacks_are_seen_
         told(library, logged(log, Misplaced((0,), -1)))
 
 
+@pytest.mark.soak
 def test_where_a_row_does_not_show_that_is_told_with_figures() -> None:
     """Truth: position in steps of 3 mrad at 5 ms, read after a delay that scatters: the plant's noise hides a row."""
     library, log = effect_library(bound("torque_limited_pendulum")), recorded("torque_limited_pendulum", "sac")

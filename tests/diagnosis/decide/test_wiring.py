@@ -88,6 +88,7 @@ def test_numbers_without_meaning_are_not_taken_for_a_slip(library: EffectLibrary
     assert found is None or not found[2]
 
 
+@pytest.mark.soak
 def test_the_sign_of_an_input_that_the_plant_answers_alike_either_way_is_said_to_be_unseen() -> None:
     """Truth: thrusts of the Aero's published equations go with the square of the voltage."""
     log = recorded("quanser_aero", "yaw_coefficients")

@@ -18,9 +18,11 @@ from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
 from sim.effects.gust import SINES, TURN
 from tests.diagnosis.conftest import LONG_S, Fly
+from tests.soak import SOAK
 
 # Truth: 1.5 mN m, 0.04 of what such an axis can be pushed with and twice what is told as a gust, forgotten in 0.7 s. Every flight has
 # the same draw of it (sim/effects/gust.py eq (1)), whose own size and time in so few seconds are what a flight can tell.
+FLIGHTS = (91, 92) if SOAK else (91,)
 GUST = {"elevation.gust": {"sigma": 1.5e-3, "T": 0.7}}
 
 
@@ -43,7 +45,7 @@ def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, FittedHypothesis
 def test_a_gust_is_noise_of_its_axis_with_its_numbers(plant: BoundPlant, fly: Fly) -> None:
     # The draw's own size within three deviations of what is known of it, its time to a factor of two: sines are a process of first order
     # only in the mean of many draws.
-    case, nominal = alone(plant, [fly(seed, GUST, LONG_S, rig_seed=90) for seed in (91, 92)])
+    case, nominal = alone(plant, [fly(seed, GUST, LONG_S, rig_seed=90) for seed in FLIGHTS])
     assert nominal.effects == ()
     found, _ = draught(case, nominal)
     assert found is not None
@@ -91,6 +93,7 @@ def test_a_gust_that_the_plant_file_states_is_carried_along_and_not_flown_with(p
     assert (kept.value, kept.sd) == pytest.approx((5e-4, 1e-4))
 
 
+@pytest.mark.soak
 def test_a_gust_that_is_found_replaces_the_one_that_the_plant_file_states(plant: BoundPlant, fly: Fly) -> None:
     # Truth: the air is four times as restless as the plant file has it, on the same axis; three deviations.
     stated = with_effects(

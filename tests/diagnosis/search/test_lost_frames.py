@@ -42,6 +42,7 @@ def losses(plant: BoundPlant, log: RunLog) -> tuple[Case, Fit | None]:
     return with_losses(case, linearised(case, nominal_fit(case)))
 
 
+@pytest.mark.soak
 def test_lost_frames_are_told_from_others(plant: BoundPlant, fly: Fly) -> None:
     # A loss leaves little trace where the command hardly changes: single frames are told better than by guessing, which would rank 0.5
     # of the pairs (lost, not lost) right, by six times the 0.008 to which 6000 frames tell that share.

@@ -53,6 +53,7 @@ def test_a_log_at_once_and_sample_by_sample_give_the_same(name: str) -> None:
     np.testing.assert_allclose(stepped(bound), outputs(bound), rtol=0, atol=1e-12)
 
 
+@pytest.mark.soak
 def test_many_ways_at_once_and_sample_by_sample_give_the_same() -> None:
     chosen = {
         "main_input.lag",

@@ -14,6 +14,7 @@ import pytest
 from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import STATES, Flight
 from identification.envelope.flights.flight_file import load_flight, load_flights, save_flight
+from identification.envelope.truth import fly as flying
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
@@ -37,7 +38,10 @@ SECONDS = 12.0
 @pytest.fixture(scope="module")
 def flown() -> list[Flight]:
     """The flights that identify both ends and those between, and of all that validate two, as each is a picture more in the report."""
-    flights = fly(drawn(5), plan(ENDS, BETWEEN), 5, SECONDS)
+    with pytest.MonkeyPatch.context() as patch:
+        if not SOAK:
+            patch.setattr(flying, "STEP_s", 0.025)  # no test here asks for more digits than the noise leaves
+        flights = fly(drawn(5), plan(ENDS, BETWEEN), 5, SECONDS)
     return [flight for flight in flights if flight.use != "validation" or flight.name in (VALIDATION, OTHER)]
 
 

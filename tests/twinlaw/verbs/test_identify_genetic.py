@@ -94,6 +94,7 @@ def test_an_interrupted_search_leaves_the_best_so_far(monkeypatch, folder, tmp_p
     assert left["a_2"] == stated["a_2"]
 
 
+@pytest.mark.soak
 def test_an_interrupted_evolution_over_a_log_leaves_the_best_so_far(monkeypatch, tmp_path):
     """Ctrl-C behind the third generation of `--search evolution` on a run log."""
     bound = bind(load_plant(Path(PLANT[1])))

@@ -28,6 +28,7 @@ def test_its_image_starts_on_the_board_names_its_table_and_answers_bit_for_bit(
     assert not (tmp_path / "firmware.a2l").exists()
 
 
+@pytest.mark.soak
 @needs_stm32flash
 def test_its_image_is_flashed_like_the_scheduled_ones(tmp_path: Path) -> None:
     out, _ = _built(tmp_path)
