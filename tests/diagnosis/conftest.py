@@ -32,6 +32,8 @@ AT_NO_SIZE: dict[str, Mapping[str, float]] = {
     "elevation.cable_spring": {},
     "elevation.periodic_torque": {},
     "elevation.quadratic_drag": {},
+    "tail_rotor.reverse_asymmetry": {},
+    "tail_rotor.warmup": {},
 }
 SPRING: Mapping[str, Mapping[str, float]] = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
 

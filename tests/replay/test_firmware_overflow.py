@@ -176,6 +176,7 @@ def test_what_lies_behind_a_law_in_fixed_point_is_named(controller: Callable[[Co
     assert "in fixed point and" in (found.sentence or "")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("off_V", "cause"),
     [(5.3, "not_found"), pytest.param(8.0, "output_wraps", marks=pytest.mark.soak)],  # a range that integers have

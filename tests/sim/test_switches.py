@@ -129,6 +129,7 @@ def test_what_is_on_counts_and_what_is_off_does_not(plant: BoundPlant, model: Mo
             )
 
 
+@pytest.mark.soak
 def test_a_switched_effect_is_the_effect() -> None:
     # Truth: the plant with that effect alone. The others have no size; the corners of those of the input are rounded over 1e-9 V, which
     # moves an input by as much: rates within 1e-9 of the largest.

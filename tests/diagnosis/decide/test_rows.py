@@ -70,6 +70,7 @@ def test_what_a_plant_may_be_itself_is_told_where_it_is_not_to_be_refused(librar
     assert told(library, logged(fly(31, seconds=SECONDS), Misplaced((0, 1), -1)), (LATE,)) == ["columns_early"]
 
 
+@pytest.mark.soak
 def test_commands_of_a_rig_with_dry_friction_that_its_plant_file_lacks_are_seen_in_other_rows() -> None:
     """Truth: the carriage of emps has 20 N of dry friction and -3 N of constant force, in its plant file neither; 1 ms a row."""
     library, log = effect_library(bound("emps")), recorded("emps", "DATA_EMPS")

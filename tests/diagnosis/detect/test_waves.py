@@ -34,6 +34,7 @@ def test_a_sine_begins_near_its_waves(plant: BoundPlant, fly: Fly, truth) -> Non
     assert min(abs(start[symbol] - values[symbol]) for start in starts) < reach
 
 
+@pytest.mark.soak
 def test_other_effects_begin_with_no_wave(plant: BoundPlant, fly: Fly) -> None:
     case = make_case(effect_library(plant), [fly(62)])
     assert wave_starts(linearised(case, nominal_fit(case)), library(plant)["azimuth.cable_spring"]) == []

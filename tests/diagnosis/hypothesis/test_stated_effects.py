@@ -41,6 +41,7 @@ def test_the_improved_plant_fed_back_in_shows_no_gap(sprung: Result, fly: Fly) -
     assert shrunk.rms_nominal["phi_rad"] < 0.2 * before.rms_nominal["phi_rad"]
 
 
+@pytest.mark.soak
 def test_a_second_effect_is_seen_beside_the_stated_one(plant: BoundPlant, fly: Fly) -> None:
     # Truth: of all effects a drag is missing; with the spring as stated there is nothing else to see.
     stated = with_effects(plant, SPRING, sd={"azimuth.cable_spring": {"k": 1e-4, "angle_0": 0.01, "h": 1e-3}})

@@ -122,6 +122,7 @@ def test_axes_that_give_are_kept_only_where_the_logs_need_it(flown: str, request
     assert needed(plain, FittedHypothesis((), found, evidence(found, taken.library.effects))) is (flown == "giving")
 
 
+@pytest.mark.soak
 def test_axes_give_only_for_what_is_asked_of_them(giving: tuple[Case, FittedHypothesis]) -> None:
     # Truth: no flight of half a minute is a million nats likelier for its friction.
     case, nominal = giving

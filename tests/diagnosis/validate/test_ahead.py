@@ -15,8 +15,10 @@ from records.logs.live import LiveRow
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
+from tests.soak import SOAK
 
 STEP_RAD = 1.534e-3
+SECONDS = 12.0 if SOAK else 10.0
 SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.0, "h": 0.0}}
 
 
@@ -39,7 +41,7 @@ def errors(found: list[Ahead]) -> np.ndarray:
 def low_noise(fly: Fly, plant: BoundPlant) -> list[LiveRow]:
     """A rig with the twin's own coefficients and no air."""
     names = [str(symbol) for symbol in plant.model.parameter_symbols]
-    return rows_of(fly(3, seconds=12.0, air=False, factors=dict.fromkeys(names, 1.0)))
+    return rows_of(fly(3, seconds=SECONDS, air=False, factors=dict.fromkeys(names, 1.0)))
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +78,7 @@ def test_a_row_that_begins_another_log_is_not_predicted_from_what_was_before(
 def test_what_the_rig_has_and_the_twin_lacks_shows_as_a_gap(plant: BoundPlant, fly: Fly) -> None:
     # A spring of 4 mN m/rad is some ten times what the encoder leaves; the twin that states it predicts as well as an exact one does.
     names = [str(symbol) for symbol in plant.model.parameter_symbols]
-    rows = rows_of(fly(3, SPRING, seconds=12.0, air=False, factors=dict.fromkeys(names, 1.0)))
+    rows = rows_of(fly(3, SPRING, seconds=SECONDS - 2.0, air=False, factors=dict.fromkeys(names, 1.0)))
     lacking, stating = Lookahead(plant), Lookahead(with_effects(plant, SPRING))
     fed(lacking, rows)
     fed(stating, rows)

@@ -10,6 +10,7 @@ from sim.effects import effects_for
 from sim.model import Model
 from sim.plants import MODELS
 from tests.sim.conftest import PLANTS
+from tests.soak import sampled
 
 CE150 = """
 main_input.deadzone d; tail_input.deadzone d; main_input.saturation limit; tail_input.saturation limit;
@@ -117,6 +118,7 @@ def test_an_effect_that_needs_a_grid_has_one_or_acts_at_a_time(model: Model) -> 
             assert times or any(parameter.starts for parameter in effect.parameters), effect.name
 
 
+@pytest.mark.parametrize("model", sampled(MODELS, keep=["ce150", "aeroshield", "maglev_coil"]), indirect=True)
 def test_coefficients_of_all_effects_together_have_names_of_their_own(model: Model) -> None:
     together = model_with(model, tuple(effects_for(model)))
     names = [str(symbol) for symbol in (*together.parameter_symbols, *together.states, *together.inputs)]

@@ -46,12 +46,12 @@ def _built(folder: Path) -> tuple[list[str], list[str]]:
 def test_verbs_of_the_scheduled_law_alone_say_so_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["design", "--plant", PLANT, "--controller", "pid", "--out", str(tmp_path)]) == 0
+    assert main(["design", "--plant", PLANT, "--controller", "instantaneous", "--out", str(tmp_path)]) == 0
     table = ["--table", str(tmp_path / "controller.json")]
     for words in (["verify", *table, "--out", str(tmp_path)], ["trace", *table]):
         capsys.readouterr()
         assert main(words) == 2
         said = capsys.readouterr().err.strip().splitlines()
         assert len(said) == 1
-        assert "'pid'" in said[0]
+        assert "'instantaneous'" in said[0]
         assert "twinlaw validate" in said[0]

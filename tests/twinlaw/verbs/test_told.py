@@ -47,6 +47,7 @@ def test_design_tells_poles_as_designed_fitted_and_rounded_and_of_both_loops_cou
     assert coupled.count("rad/s") == 1
 
 
+@pytest.mark.soak
 def test_design_says_the_same_to_a_program(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["design", "--json", "--out", str(tmp_path)]) == 0
     said = json.loads(capsys.readouterr().out)

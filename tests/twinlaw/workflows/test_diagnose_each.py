@@ -117,6 +117,8 @@ def test_each_is_answered_as_alone_and_only_once(
 def test_a_sealed_case_is_the_same_from_a_process_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    if not SOAK:  # from processes the same comes in tests/jobs/test_run.py
+        works_here(monkeypatch)
     make(6, tmp_path / "here", 1, ("nominal",))
     words = ["blind", "make", "--seed", "6", "--cases", "1", "--kinds", "nominal", "--out", str(tmp_path / "there")]
     with monkeypatch.context() as patch:
