@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from recordings.formats.matlab_objects import what
+from recordings.formats.optional import is_installed
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
 from tests.recordings.here import imported_here
 
-matio: Any = pytest.importorskip("matio", reason="no mat-io: pip install --editable '.[matlab]'")
+pytestmark = pytest.mark.skipif(not is_installed("matio"), reason="no mat-io: pip install --editable '.[matlab]'")
 
 T_S = 0.01 * np.arange(60)
 RUN = {"u_M_V": 5.0 + T_S, "u_T_V": 1.0 - T_S, "psi_rad": np.sin(T_S), "phi_rad": np.cos(T_S)}
@@ -30,6 +31,12 @@ def series(values: np.ndarray, unit: str, *, stored: bool) -> Any:
     return MatlabOpaque(held, "timeseries")
 
 
+def save(path: Path, held: dict[str, Any], version: str) -> None:
+    from matio import save_to_mat  # two seconds of pandas, which every process that only collects is spared
+
+    save_to_mat(str(path), held, version=version)
+
+
 def is_the_run(path: Path, **columns: str) -> None:
     log = imported_here(path, ColumnMapping(columns=columns)).log
     np.testing.assert_allclose(log.t_s, T_S, atol=1e-12)
@@ -41,7 +48,7 @@ def is_the_run(path: Path, **columns: str) -> None:
 def test_a_timeseries_is_the_column_of_its_name_with_its_own_times_and_unit(version: str, tmp_path: Path) -> None:
     saved = {name: series(values, "", stored=name == "u_T_V") for name, values in RUN.items()}
     saved["psi_rad"] = series(np.degrees(RUN["psi_rad"]), "deg", stored=False)
-    matio.save_to_mat(str(tmp_path / "run.mat"), {**saved, "K": np.eye(2)}, version=version)
+    save(tmp_path / "run.mat", {**saved, "K": np.eye(2)}, version)
     is_the_run(tmp_path / "run.mat")
 
 
@@ -52,9 +59,9 @@ def test_a_timetable_and_a_table_are_their_columns(version: str, tmp_path: Path)
     table = pandas.DataFrame(RUN)
     timed = table.set_index(pandas.to_timedelta(1e3 * T_S, unit="ms"))
     timed.index.name = "Time"
-    matio.save_to_mat(str(tmp_path / "timed.mat"), {"log": timed}, version=version)
+    save(tmp_path / "timed.mat", {"log": timed}, version)
     is_the_run(tmp_path / "timed.mat")
-    matio.save_to_mat(str(tmp_path / "table.mat"), {"log": table}, version=version)
+    save(tmp_path / "table.mat", {"log": table}, version)
     is_the_run(tmp_path / "table.mat", t_s="0.01*row")
 
 
@@ -63,7 +70,7 @@ def test_without_the_package_the_line_of_matlab_that_saves_them_readable_is_name
     version: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     saved = {name: series(values, "", stored=True) for name, values in RUN.items()}
-    matio.save_to_mat(str(tmp_path / "run.mat"), saved, version=version)
+    save(tmp_path / "run.mat", saved, version)
     monkeypatch.setitem(sys.modules, "matio", None)
     with pytest.raises(
         BadInput, match=r"of class timeseries: install .* in MATLAB s\.x\.Time = x\.Time; s\.x\.Data = x\.Data; save\('"
