@@ -39,7 +39,9 @@ WORKING = [
 ]
 
 
-@pytest.mark.parametrize("elevation", WORKING)
+@pytest.mark.parametrize(
+    "elevation", sampled([(entry,) for entry in WORKING], keep=[(entry,) for entry in WORKING[::2]])
+)
 def test_published_sets_follow_steps(elevation):
     """Published: 0.6 to 1.2 deg, on a manoeuvre of which only the angles are known, so half as much again is allowed."""
     flight = flown(table(elevation))
@@ -49,7 +51,9 @@ def test_published_sets_follow_steps(elevation):
     assert np.max(np.abs(flight.angle_deg[:, 0])) < 44.0
 
 
-@pytest.mark.parametrize("elevation", WORKING)
+@pytest.mark.parametrize(
+    "elevation", sampled([(entry,) for entry in WORKING], keep=[(entry,) for entry in WORKING[::2]])
+)
 def test_published_sets_follow_ramps_of_twenty_degrees_a_second(elevation):
     """Published: 0.2 deg with integral action, 0.6 to 0.8 deg without."""
     flight = flown(table(elevation), rate_deg_s=20.0)

@@ -16,8 +16,9 @@ from sim.loop import closed_loop_log
 from sim.manoeuvres import Manoeuvre
 from sim.simulate import simulate
 from tests.law_tables import ce150_table
+from tests.soak import SOAK
 
-T_S = 0.01 * np.arange(1500)
+T_S = 0.01 * np.arange(1500 if SOAK else 1200)
 
 
 def flown(plant: BoundPlant, reference: np.ndarray, locked: tuple[str, ...] = ()) -> RunLog:
@@ -39,7 +40,7 @@ def diagnosed(plant: BoundPlant, log: RunLog) -> Diagnosis:
 
 @pytest.fixture(scope="module")
 def hover(plant: BoundPlant) -> Diagnosis:
-    """Fifteen seconds in which each axis moves by two or three counts."""
+    """Twelve seconds or more in which each axis moves by two or three counts."""
     return diagnosed(plant, flown(plant, np.column_stack([0.003 * np.sin(T_S), 0.004 * np.sin(0.7 * T_S)])))
 
 

@@ -51,7 +51,7 @@ TAMPERED = [
 ]
 
 
-@pytest.mark.parametrize(("tamper", "cause", "words"), sampled(TAMPERED, keep=TAMPERED[1:8]))
+@pytest.mark.parametrize(("tamper", "cause", "words"), sampled(TAMPERED, keep=TAMPERED[1:8:2]))
 def test_columns_that_are_exchanged_turned_scaled_or_dead_are_named(
     tamper: Callable[[RunLog], RunLog], cause: str, words: str
 ) -> None:
@@ -144,13 +144,13 @@ def test_an_offset_is_named_and_a_log_that_begins_in_flight_is_its_alternative()
     assert "would look the same" in (found.sentence or "")
 
 
-@pytest.mark.parametrize(
-    ("change", "cause"),
-    [
-        ("v_V -= u_V - limited_V; const law_number w_0_V = 0.0f;", "clamped_integrator"),
-        ("if (u_V != limited_V) { v_V = self->v_V; } const law_number w_0_V = 0.0f;", "conditional_integration"),
-    ],
-)
+HELD = [
+    ("v_V -= u_V - limited_V; const law_number w_0_V = 0.0f;", "clamped_integrator"),
+    ("if (u_V != limited_V) { v_V = self->v_V; } const law_number w_0_V = 0.0f;", "conditional_integration"),
+]
+
+
+@pytest.mark.parametrize(("change", "cause"), sampled(HELD, keep=HELD[1:]))
 def test_integrators_that_are_held_at_the_limits_are_named(change: str, cause: str) -> None:
     law = edited_law("const law_number w_0_V = u_V - limited_V;", change, TIGHT)
     assert _told(flown(law, TIGHT), TIGHT).cause == cause

@@ -10,7 +10,7 @@ from diagnosis.fit.nominal import nominal_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from tests.diagnosis.arm import LONG_S, arm_case, arm_log
+from tests.diagnosis.arm import arm_case, arm_log
 
 
 def explained(case: Case, plain: FittedHypothesis, effect: str, values: dict[str, float]) -> FittedHypothesis:
@@ -23,7 +23,7 @@ def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not
     # Truth: 0.4 mN m of dry friction, which moves a prediction by many counts; the arm reads 1 ms late, a fifth of a count in usual motion.
     gains = []
     for effect, values in (("arm.coulomb", {"b": 4e-4}), ("theta_sensor.delay", {"tau": 1e-3, "jitter": 0.0})):
-        case = arm_case(arm_log({effect: values}, seed=76, seconds=LONG_S))
+        case = arm_case(arm_log({effect: values}, seed=76))
         plain = as_fitted(case, nominal_fit(case))
         (rule,) = consequence(case, plain, [explained(case, plain, effect, values)], [1.0])
         gains.append(rule.value)

@@ -46,6 +46,7 @@ def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     assert log.table_digest == found["table_digest"]
 
 
+@pytest.mark.soak
 def test_a_table_of_other_loops_has_an_image_and_a_library(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plant, table = str(plant_file("aeroshield", tmp_path)), str(tmp_path / "controller.json")
     assert main(["design", "--plant", plant, "--out", str(tmp_path)]) == 0

@@ -150,6 +150,7 @@ def test_an_address_without_its_token_says_what_to_do(browser: Browser, watch: O
     page.wait_for("document.querySelector('#trouble').textContent.includes('not whole')")
 
 
+@pytest.mark.soak
 def test_a_page_whose_server_ends_says_so_and_offers_no_button(browser: Browser, watch: Open) -> None:
     running = watch()
     page = board_page(browser, running)
