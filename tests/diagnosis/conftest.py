@@ -15,6 +15,7 @@ from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant, bind
 from sim.loop import closed_loop_log
 from sim.simulate import Noise, simulate
+from tests.diagnosis.arm import arm, arm_log
 from tests.plants import lively_table
 from tests.soak import SOAK
 
@@ -35,6 +36,7 @@ AT_NO_SIZE: dict[str, Mapping[str, float]] = {
     "tail_rotor.reverse_asymmetry": {},
     "tail_rotor.warmup": {},
 }
+RUB: Mapping[str, Mapping[str, float]] = {"arm.coulomb": {"b": 4e-4}}
 SPRING: Mapping[str, Mapping[str, float]] = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
 
 
@@ -93,6 +95,13 @@ def fly(plant: BoundPlant) -> Fly:
         return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={}, locked=locked)  # type: ignore[arg-type]
 
     return flown
+
+
+@pytest.fixture(scope="session")
+def rubbed() -> Result:
+    """What the diagnosis makes of an arm that rubs and whose plant file knows no friction, from one run with another held out."""
+    logs = [arm_log(RUB, seed=seed) for seed in (11, 12)]
+    return diagnose(arm(), Material(logs[:1], logs[1:], ["hold"], [None, None]))
 
 
 @pytest.fixture(scope="session")

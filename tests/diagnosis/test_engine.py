@@ -10,8 +10,8 @@ from diagnosis.result import Result
 from records.diagnosis import diagnosis_text
 from records.plant import plant_text
 from sim.bind import BoundPlant, bind
-from tests.diagnosis.arm import arm, arm_log
-from tests.diagnosis.conftest import RIG, SPRING, SPRUNG_SECONDS, Fly
+from tests.diagnosis.arm import SECONDS, arm, arm_log
+from tests.diagnosis.conftest import RIG, RUB, SPRING, SPRUNG_SECONDS, Fly
 
 
 def test_a_run_of_the_stated_plant_shows_no_gap() -> None:
@@ -28,6 +28,16 @@ def test_a_run_of_the_stated_plant_shows_no_gap() -> None:
     assert (told.value, told.limit, told.outcome) == (diagnosis.false_alarm_probability, 0.01, "no gap")
 
 
+def test_a_rub_is_found_with_its_level(rubbed: Result) -> None:
+    diagnosis = rubbed.diagnosis
+    assert diagnosis.verdict == "gap"
+    top = diagnosis.effects[0]
+    assert (top.effect, diagnosis.found) == ("arm.coulomb", ("arm.coulomb",))
+    assert top.parameters["b"].value == pytest.approx(RUB["arm.coulomb"]["b"], rel=0.05)
+    assert diagnosis.places[0].place == "arm"
+
+
+@pytest.mark.soak  # a cold library of the largest plant
 def test_a_spring_is_found_with_its_stiffness(sprung: Result) -> None:
     diagnosis = sprung.diagnosis
     assert diagnosis.verdict == "gap"
@@ -41,12 +51,12 @@ def test_a_spring_is_found_with_its_stiffness(sprung: Result) -> None:
     assert diagnosis.places[0].place == "azimuth"
 
 
-def test_the_answer_is_a_valid_record_and_its_plant_binds(sprung: Result) -> None:
-    assert '"schema": "diagnosis/1"' in diagnosis_text(sprung.diagnosis)
-    assert sum(row.share for row in sprung.diagnosis.places) == pytest.approx(1.0)
-    bound = bind(sprung.plant)
-    assert plant_text(sprung.plant)
-    assert set(sprung.diagnosis.found) == set(bound.effects)
+def test_the_answer_is_a_valid_record_and_its_plant_binds(rubbed: Result) -> None:
+    assert '"schema": "diagnosis/1"' in diagnosis_text(rubbed.diagnosis)
+    assert sum(row.share for row in rubbed.diagnosis.places) == pytest.approx(1.0)
+    bound = bind(rubbed.plant)
+    assert plant_text(rubbed.plant)
+    assert set(rubbed.diagnosis.found) == set(bound.effects)
 
 
 @pytest.mark.soak  # in every suite tests/twinlaw/test_diagnosing_each.py compares files of another process
@@ -56,10 +66,10 @@ def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, sprung:
     assert diagnosis_text(again.diagnosis) == diagnosis_text(sprung.diagnosis)
 
 
-def test_predictions_cover_the_hold_out(sprung: Result) -> None:
-    (predicted,) = sprung.predicted
+def test_predictions_cover_the_hold_out(rubbed: Result) -> None:
+    (predicted,) = rubbed.predicted
     for variant in ("nominal", "before", "after"):
-        assert np.isfinite(predicted.by[variant]).mean() > 1.0 - 2.1 / SPRUNG_SECONDS  # but for the first two seconds
+        assert np.isfinite(predicted.by[variant]).mean() > 1.0 - 2.1 / SECONDS  # but for the first two seconds
 
 
 @pytest.mark.soak  # in every suite test_parameter_alone.py has another parameter

@@ -8,7 +8,7 @@ import pytest
 
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.filter.filter_input import filter_input_of
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
@@ -19,6 +19,7 @@ from sim.bind import BoundPlant, bind
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 from sim.model import Model
+from tests.diagnosis.arm import arm_case, arm_log
 from tests.diagnosis.conftest import Fly
 from tests.plants import lively_table
 from tests.soak import SOAK, sampled
@@ -103,6 +104,7 @@ def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
     assert result.diagnosis.verdict == "no gap"
 
 
+@pytest.mark.soak
 def test_axes_that_give_before_they_slide_are_taken_to(giving: tuple[Case, FittedHypothesis]) -> None:
     case, nominal = giving
     hypothesis = yielding(case, [nominal]).case.stated
@@ -157,6 +159,14 @@ def test_dry_friction_that_gives_keeps_its_name(plant: BoundPlant) -> None:
     assert sum("springs back" in note for note in result.diagnosis.notes) == 2
 
 
+def test_an_axis_without_friction_is_not_taken_to_yield() -> None:
+    case = arm_case(arm_log(seconds=6.0))
+    nominal = as_fitted(case, nominal_fit(case))
+    assert yielding(case, [nominal]).case is case
+    assert not needed(case, nominal)
+
+
+@pytest.mark.soak  # a cold library of the largest plant
 def test_axes_that_stick_are_not_taken_to_yield(sticking: tuple[Case, FittedHypothesis]) -> None:
     case, nominal = sticking
     assert yielding(case, [nominal]).case is case
