@@ -64,6 +64,7 @@ OTHERS = [
 ]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("controller", "cause", "first"), sampled(OTHERS, keep=OTHERS[:1]))
 def test_another_firmware_over_the_stated_plant_is_no_gap_and_is_told_first_and_the_tables_own_is_flown_again(
     tmp_path: Path,
