@@ -1,6 +1,7 @@
 """`twinlaw diagnose` on flights of another firmware over the plant as stated: the firmware is told first, and the plant has no gap."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,15 @@ from records.files import write_atomic
 from records.log import save_log
 from records.table import table_text
 from sim.equilibrium import equilibrium
-from sim.loop import Controller, fly
+from sim.loop import Controller, Wired, fly
 from sim.manoeuvres import Leg, manoeuvre
+from sim.wiring import wiring
 from tests.law_tables import ce150_table, changed_axis
+from tests.plants import bound, stated_table
 from tests.replay.firmware_flights import Wrapped, flown, plant, stale
 from tests.soak import sampled
 from twinlaw.command import main
+from twinlaw.workflows.chain.flying import flight_of
 from twinlaw.workflows.diagnose.material import read_material
 from verification.host_law import host_law
 
@@ -81,6 +85,42 @@ def test_another_firmware_over_the_stated_plant_is_no_gap_and_is_told_first_and_
     assert found.firmware is not None
     assert (found.firmware.bit_exact, (found.firmware.cause or "").partition(":")[0]) == (False, cause)
     told = capsys.readouterr().out
+    assert 0 <= told.index(first) < told.index("no gap")
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert 0 <= page.index(first) < page.index("The plant file explains these logs")
+
+
+class _Late:
+    """The law of one loop, given the angle of the sample before."""
+
+    def __init__(self, law: Controller) -> None:
+        self._law, self._angle_rad = law, 0.0
+
+    def reset(self, *angles_rad: float) -> None:
+        (self._angle_rad,) = angles_rad
+        self._law.reset(*angles_rad)
+
+    def step(self, reference_rad: float, angle_rad: float) -> tuple[float, ...]:
+        given_rad, self._angle_rad = self._angle_rad, angle_rad
+        return self._law.step(reference_rad, given_rad)
+
+
+def test_another_firmware_over_an_arm_as_stated_is_no_gap_and_is_told_first(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arm, table = bound("aeroshield"), stated_table("aeroshield")
+    whole = flight_of(arm, table)
+    part = replace(whole, t_s=whole.t_s[:1500], reference_rad=whole.reference_rad[:1500])
+    log = fly(arm, Wired(_Late(host_law(table)), wiring(arm, table.loops)), part, table_digest=table.digest)
+    write_atomic(tmp_path / "controller.json", table_text(table))
+    save_log(tmp_path / "run.csv", log)
+    words = ["diagnose", "--plant", "plants/aeroshield.toml", "--out", str(tmp_path / "out")]
+    assert main([*words, str(tmp_path / "run.csv")]) == 0
+    found = load_diagnosis(tmp_path / "out" / "diagnosis.json")
+    assert (found.verdict, found.found) == ("no gap", ())
+    assert found.firmware is not None
+    assert (found.firmware.bit_exact, (found.firmware.cause or "").partition(":")[0]) == (False, "stale_sample")
+    told, first = capsys.readouterr().out, "used the arm measured one sample before"
     assert 0 <= told.index(first) < told.index("no gap")
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert 0 <= page.index(first) < page.index("The plant file explains these logs")
