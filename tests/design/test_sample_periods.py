@@ -54,6 +54,7 @@ def test_encoder_steps_are_not_rectified_at_any_period(period_s: float) -> None:
     assert psi_rad.max() < end + 2.5 * table.axes[0].resolution_rad
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("arithmetic", sampled(("float32", "fixed"), keep=["float32"]))
 def test_at_the_shortest_period_the_generated_law_flies_as_double_precision_does(arithmetic: str) -> None:
     """No axis overshoots by more than a hundredth; with a roll-off the azimuth is lost there."""

@@ -153,6 +153,7 @@ def test_encoder_counts_in_a_narrow_integer_are_named(
     assert words in (found.sentence or "")
 
 
+@pytest.mark.soak
 def test_a_wrap_beside_another_cause_is_named_with_it() -> None:
     assert _told(_wraps_at_6_V(Wrapped(host_law(TABLE), stale((2, 3))))).cause == "stale_sample + output_wraps"
 
@@ -169,6 +170,7 @@ def test_a_wrap_beside_losses_is_named_with_them() -> None:
 BEHIND = [_wraps_at_6_V, lambda law: _behind(lambda u: -u, lambda u: -u, law)]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("controller", sampled(BEHIND, keep=BEHIND[:1]))
 def test_what_lies_behind_a_law_in_fixed_point_is_named(controller: Callable[[Controller], Controller]) -> None:
     found = _told(controller(host_law(TABLE, "fixed")))

@@ -217,6 +217,7 @@ def test_what_no_variant_explains_is_not_named(old: str, new: str) -> None:
     assert "no other firmware that was tried" in (found.sentence or "")
 
 
+@pytest.mark.soak
 def test_random_outputs_are_not_explained_by_incidents() -> None:
     log = own()
     held = np.repeat(np.random.default_rng(5).normal(5.0, 1.0, (len(log.t_s) // 3 + 1, 2)), 3, axis=0)[: len(log.t_s)]

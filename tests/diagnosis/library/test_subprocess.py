@@ -24,6 +24,7 @@ def test_what_the_process_raises_is_told() -> None:
         in_subprocess(math.sqrt, -1.0)
 
 
+@pytest.mark.soak
 def test_a_library_built_by_another_process_is_that_built_here() -> None:
     plant = bound("aeroshield")
     whole = effect_library(plant).whole

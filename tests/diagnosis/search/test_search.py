@@ -128,6 +128,7 @@ def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(sprung_an
     assert shares["main_input"] <= (both.evidence - none.evidence) / (both.evidence - none.evidence + known) + 1e-9
 
 
+@pytest.mark.soak
 def test_a_fit_gone_astray_is_begun_once_more_from_the_plant_as_stated(plant: BoundPlant, fly: Fly) -> None:
     # Truth: a motor that loses a fifth of its pull; the fit that is given has every parameter four deviations off.
     case = make_case(effect_library(plant), [fly(63, WARMING, rig_seed=63, air=False)])

@@ -120,6 +120,7 @@ def test_an_interrupted_evolution_over_a_log_leaves_the_best_so_far(monkeypatch,
     assert "interrupted" in left["a_1"].source
 
 
+@pytest.mark.soak
 def test_only_what_is_named_is_estimated(folder, tmp_path, capsys):
     record = str(folder / "01-main_motor.toml")
     assert main(["identify", *PLANT, "--free", "I_inv", "--json", "--out", str(tmp_path), record]) == 0

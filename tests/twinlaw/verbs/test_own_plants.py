@@ -26,6 +26,7 @@ def simulated(name: str, folder: Path) -> Path:
     return folder / "run" / "simulation.csv"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("name", sampled(list(WORKING), {"coil"}))
 def test_a_plant_runs_and_its_parameters_come_back(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

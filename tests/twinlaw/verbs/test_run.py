@@ -128,6 +128,7 @@ def flown(out: Path) -> RunLog:
     return replace(log, t_s=log.t_s[rows], u=log.u[rows].copy(), y=log.y[rows], extra=extra, seq=seq)
 
 
+@pytest.mark.soak
 def test_the_log_of_the_flight_replays_bit_by_bit(
     out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
