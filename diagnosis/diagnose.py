@@ -242,7 +242,7 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     weighed, rules = without_idle(seen.case, weighed, found.fitted)
     seen = seen.because(*rules)
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
-    weighed, told, rules = _favoured(holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
+    weighed, told, rules = _favoured(seen, holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
     doubts = doubt(seen.case, found, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *told)
     chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted)
@@ -254,16 +254,20 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
 
 
 def _favoured(
-    holdout: Holdout | None, weighed: Weighed, gained: float, left: float
+    seen: Seen, holdout: Holdout | None, weighed: Weighed, gained: float, left: float
 ) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
-    """What was weighed, with what the hold-out says of it, as probabilities; `gained` and `left` are nats, see `overruled`."""
-    if holdout is None or not weighed.fitted:
-        weighed, law = calibrated(weighed, None)
+    """What was weighed, with what the hold-out says of it, or without one the logs themselves of how far off it leaves them, as
+    probabilities; `gained` and `left` are nats, see `overruled`."""
+    if not weighed.fitted:
+        return weighed, (), ()
+    if holdout is None:
+        own = Holdout(seen.case, ["" for _ in seen.case.flights], (), seen.retuned)
+        weighed, law = calibrated(weighed, None, own.off(weighed.fitted[0]))
         return weighed, (), law
     weighed, preferences = preferred(holdout, weighed)
     weighed, over = overruled(holdout, weighed, gained, left)
     told, notes, rules = asked(holdout, weighed.fitted[0])
-    weighed, law = calibrated(weighed, favour(told))
+    weighed, law = calibrated(weighed, favour(told), holdout.off(weighed.fitted[0]))
     return weighed, notes, (*preferences, *over, *rules, *law)
 
 

@@ -13,23 +13,23 @@ from diagnosis.decide.weighing import Weighed, named
 from diagnosis.decisions import held_against
 from records.reasons import Decision
 
-FEATURES = ("sure", "favour", "silent", "further")  # in the order of the law's coefficients
+FEATURES = ("sure", "favour", "silent", "off")  # in the order of the law's coefficients
 
 
 @dataclass(frozen=True)
 class Features:
     """What the law is told: the logit of the weight of all names together, what the hold-out says for the first (-1 to 1), whether there is
-    none, and how many effects the first has beyond one."""
+    none, and ln of how far off the first leaves predictions, in units of what the sensors leave."""
 
     sure: float
     favour: float
     silent: float
-    further: float
+    off: float
 
     @property
     def vector(self) -> tuple[float, ...]:
         """The features in the order of FEATURES."""
-        return (self.sure, self.favour, self.silent, self.further)
+        return (self.sure, self.favour, self.silent, self.off)
 
 
 @dataclass(frozen=True)
@@ -51,24 +51,26 @@ def learned() -> Law:
     return Law(kept["intercept"], tuple(kept["coefficients"][name] for name in FEATURES))
 
 
-def features_of(weighed: Weighed, favour: float | None) -> Features:
-    """What the law is told; `favour` is None without a hold-out."""
+def features_of(weighed: Weighed, favour: float | None, off: float) -> Features:
+    """What the law is told; `favour` is None without a hold-out, `off` as in holdout.py."""
     p = sum(weighed.probabilities)
     sure = float(
         np.clip(
             np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12)), -decisions.FARTHEST_LOGIT, decisions.FARTHEST_LOGIT
         )
     )
-    return Features(sure, favour or 0.0, float(favour is None), float(len(weighed.fitted[0].effects) - 1))
+    return Features(sure, favour or 0.0, float(favour is None), off)
 
 
-def calibrated(weighed: Weighed, favour: float | None, law: Law | None = None) -> tuple[Weighed, tuple[Decision, ...]]:
+def calibrated(
+    weighed: Weighed, favour: float | None, off: float, law: Law | None = None
+) -> tuple[Weighed, tuple[Decision, ...]]:
     """The names together as probable as such names came true, each with its share of that, and all else with its share of the rest. The
     records are the law's features and the first name's share."""
     names = sum(weighed.probabilities)
     if not 0.0 < names < 1.0:  # nothing to share, or nothing beside the names
         return weighed, ()
-    told, of = features_of(weighed, favour), named(weighed)
+    told, of = features_of(weighed, favour, off), named(weighed)
     known = (learned() if law is None else law).probability(told)
     rest = (1.0 - known) / (1.0 - names)
     found = replace(

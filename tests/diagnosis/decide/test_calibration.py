@@ -17,9 +17,9 @@ def weighed(first: float, second: float, unknown: float) -> Weighed:
 
 
 def test_the_names_share_the_laws_probability_and_the_rest_shares_what_is_left() -> None:
-    law = Law(-0.5, (1.0, 2.0, 0.0, 0.0))
-    found, rules = calibrated(weighed(0.5, 0.2, 0.2), 0.25, law)
-    truth = 1.0 / (1.0 + np.exp(0.5 - np.log(0.7 / 0.3) - 0.5))
+    law = Law(-0.5, (1.0, 2.0, 0.0, -0.3))
+    found, rules = calibrated(weighed(0.5, 0.2, 0.2), 0.25, 2.0, law)
+    truth = 1.0 / (1.0 + np.exp(0.5 - np.log(0.7 / 0.3) - 0.5 + 0.6))
     assert found.probabilities == pytest.approx((truth * 5.0 / 7.0, truth * 2.0 / 7.0))
     assert found.unknown == pytest.approx((1.0 - truth) * 0.2 / 0.3)
     assert sum(found.probabilities) + found.unknown + found.retune == pytest.approx(1.0)
@@ -29,26 +29,27 @@ def test_the_names_share_the_laws_probability_and_the_rest_shares_what_is_left()
 
 
 def test_surer_weights_than_the_law_was_told_of_count_no_more() -> None:
-    assert features_of(weighed(1.0 - 1e-9, 0.0, 1e-9), None).sure == decisions.FARTHEST_LOGIT
-    assert features_of(weighed(1e-9, 0.0, 1.0 - 1e-9), None).sure == -decisions.FARTHEST_LOGIT
+    assert features_of(weighed(1.0 - 1e-9, 0.0, 1e-9), None, 0.0).sure == decisions.FARTHEST_LOGIT
+    assert features_of(weighed(1e-9, 0.0, 1.0 - 1e-9), None, 0.0).sure == -decisions.FARTHEST_LOGIT
 
 
 def test_without_a_name_nothing_is_asked() -> None:
     nameless = Weighed((), (), 1.0, 0.0, 10.0)
-    assert calibrated(nameless, 0.5) == (nameless, ())
+    assert calibrated(nameless, 0.5, 0.0) == (nameless, ())
 
 
 def test_names_that_weigh_nothing_stay_so() -> None:
     nothing = weighed(0.0, 0.0, 1.0)
-    assert calibrated(nothing, 0.5) == (nothing, ())
+    assert calibrated(nothing, 0.5, 0.0) == (nothing, ())
 
 
-def test_the_learned_law_is_surer_of_what_weighs_more_and_of_what_a_hold_out_favours() -> None:
+def test_the_learned_law_is_surer_of_what_weighs_more_what_a_hold_out_favours_and_what_leaves_little() -> None:
     law = learned()
     assert len(law.coefficients) == len(FEATURES)
 
-    def p(sure: float, favour: float) -> float:
-        return law.probability(features_of(weighed(sure, 0.0, 1.0 - sure), favour))
+    def p(sure: float, favour: float, off: float = 1.0) -> float:
+        return law.probability(features_of(weighed(sure, 0.0, 1.0 - sure), favour, off))
 
     assert p(0.9, 0.5) > p(0.4, 0.5)
     assert p(0.7, 0.8) > p(0.7, -0.5)
+    assert p(0.7, 0.8, 0.3) > p(0.7, 0.8, 3.0)
