@@ -59,7 +59,7 @@ def features_of(weighed: Weighed, favour: float | None, off: float) -> Features:
             np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12)), -decisions.FARTHEST_LOGIT, decisions.FARTHEST_LOGIT
         )
     )
-    return Features(sure, favour or 0.0, float(favour is None), off)
+    return Features(sure, favour or 0.0, float(favour is None), min(off, decisions.FARTHEST_OFF))
 
 
 def calibrated(

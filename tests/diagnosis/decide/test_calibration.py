@@ -31,6 +31,7 @@ def test_the_names_share_the_laws_probability_and_the_rest_shares_what_is_left()
 def test_surer_weights_than_the_law_was_told_of_count_no_more() -> None:
     assert features_of(weighed(1.0 - 1e-9, 0.0, 1e-9), None, 0.0).sure == decisions.FARTHEST_LOGIT
     assert features_of(weighed(1e-9, 0.0, 1.0 - 1e-9), None, 0.0).sure == -decisions.FARTHEST_LOGIT
+    assert features_of(weighed(0.5, 0.0, 0.5), None, 11.0).off == decisions.FARTHEST_OFF
 
 
 def test_without_a_name_nothing_is_asked() -> None:
@@ -52,4 +53,4 @@ def test_the_learned_law_is_surer_of_what_weighs_more_what_a_hold_out_favours_an
 
     assert p(0.9, 0.5) > p(0.4, 0.5)
     assert p(0.7, 0.8) > p(0.7, -0.5)
-    assert p(0.7, 0.8, 0.3) > p(0.7, 0.8, 3.0)
+    assert p(0.7, 0.8, 0.3) > p(0.7, 0.8, 2.0)
