@@ -19,10 +19,11 @@ PADDED, PEAKS = 8, 6  # points of the spectrum a cycle over all counts; its high
 NEARLY_AS_HIGH = 0.8
 LOWEST = 0.3  # of all counts in phase: those of a grid of 1.5 counts without noise are 0.41
 AROUND = np.linspace(-1.0, 1.0, 81)
-WINDOW = 1 << 14  # units of the widest spectrum,
-FINER = 4  # each unit as many of the next,
-FINEST = 8  # and as many are the finest grid that is looked for in it
-ROUNDED = 2.0  # counts that the farthest count may be beside the grid
+# Time: a spectrum of all counts of a fine encoder took 24 s. Coarse grids are looked for first, in coarse units.
+WINDOW = 1 << 14  # units of the widest spectrum
+FINER = 4  # each unit as many of the next
+FINEST = 8  # units: finer grids are looked for in the next unit, which shows their points apart
+ROUNDED = 2.0  # counts that the farthest count may be beside the grid: rounding and noise leave it within one
 AS_GOOD = 1.0  # nats: frequencies that near the best are one plateau
 
 
@@ -71,8 +72,11 @@ def _passed(counts: Counts) -> Counts:
 
 
 def _units(span: int) -> list[int]:
-    """Units, in counts, in which a window over all counts is looked at for coarse grids first, and over fewer for finer ones."""
-    return [FINER**power for power in range(20, 0, -1) if FINER**power * WINDOW < FINER * span] + [1]
+    """Units, in counts, the coarsest first: that whose window holds all of `span` counts, then finer ones, a count the last."""
+    units = [1]
+    while units[0] * WINDOW < span:
+        units.insert(0, units[0] * FINER)
+    return units
 
 
 def _busiest(counts: Counts, times: Counts, reach: int) -> slice:
