@@ -53,7 +53,7 @@ class EffectParameter:
     `zero` is the value at which the effect vanishes, None for a number that only shapes it; `reference` is a size that one may meet
     on such a rig. `starts` are the values from which a fit begins where one is not enough; all lie within [lower, upper]. One that is
     `refining` is 0 in the effect's plain formula, and a plant file may leave it out. Where `rough`, the likelihood by it has too many
-    tops for slopes: a fit tries values beside it, and the choice among them costs evidence. `unlikely` values make another cause
+    tops for slopes: a fit tries values beside it, and the choice of a size among them costs evidence. `unlikely` values make another cause
     of what fits.
     """
 

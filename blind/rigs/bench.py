@@ -1,5 +1,6 @@
 """What a case is made on: a plan, a drawn rig with the place where it flies, and the kinds of rig that can be drawn."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -68,6 +69,9 @@ class Logging:
     speed_step_rad_s: float
 
 
+GRAVITY = (("m", "l", "g"), ("dx", "g", "me"), ("tau_gE",))  # whose product plant files state it as
+
+
 @dataclass(frozen=True, eq=False)
 class Bench:
     """The rig as stated, the rig as it is (without effects), where it flies, its training runs, how they are logged.
@@ -89,9 +93,8 @@ class Bench:
     @property
     def gravity_Nm(self) -> float:
         """Gravity's moment about the arm's bearing; 0 where the plant file has none of that name."""
-        if {"m", "l", "g"} <= self.true.values.keys():
-            return self.true.value("m") * self.true.value("l") * self.true.value("g")
-        return self.true.value("tau_gE") if "tau_gE" in self.true.values else 0.0
+        stated = (names for names in GRAVITY if self.true.values.keys() >= set(names))
+        return next((math.prod(self.true.value(name) for name in names) for names in stated), 0.0)
 
 
 CE150_FILE = Path(__file__).resolve().parents[2] / "plants" / "ce150.toml"

@@ -1,5 +1,7 @@
 """Steps of an input seen in the motion: which step's rounding errors the innovations follow."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import sympy
 from numpy.typing import NDArray
@@ -8,15 +10,17 @@ from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances
+from sim.paths.path import in_held_steps_of_each
 
 Array = NDArray[np.float64]
-COUNT, AT_ONCE = 660, 220  # some 0.5 % apart: 25 steps further a rounding must still fall alike
-SMALLEST, LARGEST = 0.004, 0.12  # of the input's range
+COUNT, AT_ONCE = 840, 210  # some 0.5 % apart: 25 steps further a rounding must still fall alike
+SMALLEST, LARGEST = 0.004, 0.25  # of the input's range
 STEPS_APART = 1.004
 
 
-def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
-    """The steps q of an input whose errors q round(u/q) - u explain most, to first order; a rough step hits only near the true one."""
+def likely_steps(linearisation: Linearisation, place: str, holds: Sequence[float] = (0.0,)) -> list[float]:
+    """The steps q of an input whose errors explain most, to first order, each held by one of the shares `holds` of it beyond its half; a
+    rough step hits only near the true one."""
     model = linearisation.case.library.bound.model
     entry = model.places.inputs[place]
     target = _target(linearisation, entry.variable)
@@ -25,7 +29,8 @@ def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
     column = model.inputs.index(entry.variable)
     steps = np.geomspace(SMALLEST, LARGEST, COUNT) * entry.size
     parts = np.split(steps, COUNT // AT_ONCE)
-    gains = np.concatenate([_gains(linearisation, column, target, part) for part in parts])
+    by_hold = [np.concatenate([_gains(linearisation, column, target, part, hold) for part in parts]) for hold in holds]
+    gains = np.max(by_hold, axis=0)
     found: list[float] = []
     for index in np.argsort(-gains).tolist():
         step = float(steps[index])
@@ -36,20 +41,21 @@ def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
     return found
 
 
-def _gains(linearisation: Linearisation, column: int, target: int, steps: Array) -> Array:
+def _gains(linearisation: Linearisation, column: int, target: int, steps: Array, hold: float) -> Array:
     return linearisation.gains_by(
-        [_errors(filter_input, column, steps) for filter_input in linearisation.filter_inputs], target
+        [_errors(filter_input, column, steps, hold) for filter_input in linearisation.filter_inputs], target
     )
 
 
-def _errors(filter_input: FilterInput, column: int, steps: Array) -> Disturbances:
+def _errors(filter_input: FilterInput, column: int, steps: Array, hold: float) -> Disturbances:
     """Errors of an input by steps, over each of a filter input's own (instants, steps): those that the rig has move
     the innovations as its answer
     says; what the model would add moves them the other way."""
     u, h = filter_input.u[:, column, None], np.append(np.diff(filter_input.t_s), 0.0)[:, None]
+    reached = in_held_steps_of_each(u[:, 0], steps, hold)
 
     def disturbance(part: slice) -> Array:
-        errors: Array = u[part] - steps * np.round(u[part] / steps)
+        errors: Array = u[part] - reached[part]
         pushed: Array = errors * h[part]
         return pushed
 

@@ -199,7 +199,8 @@ def _steps(case: Case, linearisation: Linearisation, effect: Effect) -> list[flo
     library = case.library
     sensor = library.bound.model.places.sensors.get(effect.place)
     if sensor is None:
-        return likely_steps(linearisation, effect.place)
+        holds = [hold for p in effect.parameters if p.rough and not p.is_size for hold in p.starts]
+        return likely_steps(linearisation, effect.place, holds or (0.0,))
     place = library.outputs.index(sensor.output)
     read = np.concatenate([flight.filter_input.read[:, place] for flight in case.flights])
     step = coarse_step(read, library.bound.plant.sensors[sensor.output])

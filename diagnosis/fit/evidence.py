@@ -38,7 +38,7 @@ def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     shapes = [row for row, is_size in new if not is_size]
     supposed = [effects[name] for name in found.hypothesis.effects]
     prior -= WAVE_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
-    prior -= STEPS_COST * sum(parameter.rough for effect in supposed for parameter in effect.parameters)
+    prior -= STEPS_COST * sum(p.rough and p.is_size for effect in supposed for p in effect.parameters)
     prior -= COLOUR_COST * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
     own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own

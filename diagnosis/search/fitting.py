@@ -19,6 +19,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from sim.effect import Role
 
 Array = NDArray[np.float64]
+TRIED = 13  # values at a time
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
 POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
 STEP_FINELY = (
@@ -103,7 +104,19 @@ def _is_rough(case: Case, name: str) -> bool:
 def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float]) -> Hypothesis:
     """The start with the likeliest size near it, where slopes do not lead to it."""
     for reach in reaches:
-        start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, 13))
+        start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, TRIED))
+        start = _reshaped(case, start, effect)
+    return start
+
+
+def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:
+    """The start with the likeliest of what else is rough in an effect, over its whole range."""
+    for parameter in case.library.effects[name].parameters:
+        if parameter.rough and not parameter.is_size:
+            values = np.linspace(parameter.lower, parameter.upper, TRIED).tolist()
+            start = _likeliest_value(
+                case, start, name, parameter.symbol, [start.effects[name][parameter.symbol], *values]
+            )
     return start
 
 
@@ -128,11 +141,15 @@ def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:
 def _likeliest(case: Case, start: Hypothesis, effect: str, factors: Array) -> Hypothesis:
     """The start with that of the factors on an effect's size that the logs find likeliest."""
     symbol = case.library.effects[effect].size.symbol
-    sized = [
-        start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: float(value)}})
-        for value in start.effects[effect][symbol] * factors
+    return _likeliest_value(case, start, effect, symbol, (start.effects[effect][symbol] * factors).tolist())
+
+
+def _likeliest_value(case: Case, start: Hypothesis, effect: str, symbol: str, values: Sequence[float]) -> Hypothesis:
+    """The start with that of the values of one number of an effect that the logs find likeliest."""
+    tried = [
+        start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: value}}) for value in values
     ]
-    best, value = likeliest(case, sized)
+    best, value = likeliest(case, tried)
     return best if value > -np.inf else start
 
 

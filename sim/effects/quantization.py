@@ -1,6 +1,10 @@
 """Steps: a driver or a sensor that knows only multiples of q.
 
 (1)  q round(x / q)
+
+A driver's may hold a step until its command is further away than half a step, as a comparator with hysteresis does:
+
+(2)  v stays while abs(u - v) <= (1/2 + h) q, else v = q round(u / q)
 """
 
 from collections.abc import Iterator
@@ -14,7 +18,7 @@ from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eq (1) on each input and each sensor."""
+    """Eq (2) on each input, eq (1) on each sensor."""
     for place, entry in model.places.inputs.items():
         column = model.inputs.index(entry.variable)
         size = entry.size
@@ -33,12 +37,13 @@ def effects(model: Model) -> Iterator[Effect]:
                     role=Role.STEP,
                     rough=place.endswith("_input"),  # set among several inputs
                 ),
+                EffectParameter("h", "1", 0.0, 0.3, 0.0, starts=HOLDS, refining=True, rough=place.endswith("_input")),
             ),
-            equation="q round(u/q)",
+            equation="q round(u/q), held within (1/2 + h) q",
             story="The driver knows only coarse steps of voltage.",
             source="a converter's or PWM's resolution",
             prior=COMMON,
-            on_input=lambda values, column=column: Quantised(column, values["q"]),
+            on_input=lambda values, column=column: Quantised(column, values["q"], values.get("h", 0.0)),
             smooth=False,
         )
     for place, sensor in model.places.sensors.items():
@@ -69,4 +74,5 @@ def effects(model: Model) -> Iterator[Effect]:
 
 
 INPUT_STEPS = (0.005, 0.01, 0.02, 0.04, 0.08)
+HOLDS = (0.0, 0.12)
 OUTPUT_STEPS = (0.003, 0.006, 0.012, 0.025)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sim.paths.path import SAME_INSTANT_S, Array, Held, in_steps, played, uniform
+from sim.paths.path import SAME_INSTANT_S, Array, Held, in_held_steps, played, uniform
 
 PIECE_S = 2.5e-3
 MOST_PIECES = 16
@@ -65,19 +65,20 @@ class Delay:
 
 @dataclass(frozen=True)
 class Quantised:
-    """The input `column` in steps of q; 0 stands for none."""
+    """The input `column` in steps of q, each of which holds until the command is (1/2 + `hold`) q away from it; 0 stands for none."""
 
     column: int
     q: float
+    hold: float = 0.0
     order: ClassVar[int] = 2
 
     def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
-        """See InputStage; remembers nothing."""
+        """See InputStage; remembers the step that holds."""
         if self.q <= 0.0:
             return signal, None
         values = signal.values.copy()
-        values[:, self.column] = in_steps(values[:, self.column], self.q)
-        return Held(signal.edges_s, values), None
+        values[:, self.column], last = in_held_steps(values[:, self.column], self.q, self.hold, memory)
+        return Held(signal.edges_s, values), last
 
 
 @dataclass(frozen=True)

@@ -95,6 +95,32 @@ def in_steps(x: Array, step: float | Array) -> Array:
     return np.where(np.greater(step, 0.0), np.rint(count) * step, x)
 
 
+def in_held_steps(x: Array, step: float, hold: float, level: float | None) -> tuple[Array, float]:
+    """x (n,) in multiples of `step`, each held until x is (1/2 + `hold`) steps away from it, and the last one; `level` is the one before,
+    None where x begins at the nearest."""
+    nearest = in_steps(x, step)
+    if hold == 0.0:
+        return nearest, float(nearest[-1])
+    away, y = (0.5 + hold) * step, np.empty(len(x))
+    at = float(nearest[0]) if level is None else level
+    for k, (wanted, there) in enumerate(zip(x.tolist(), nearest.tolist(), strict=True)):
+        if abs(wanted - at) > away:
+            at = there
+        y[k] = at
+    return y, at
+
+
+def in_held_steps_of_each(x: Array, steps: Array, hold: float) -> Array:
+    """The same in several steps (k,) side by side, each from the nearest on: (n, k)."""
+    nearest = in_steps(np.repeat(x[:, np.newaxis], len(steps), axis=1), steps)
+    if hold == 0.0:
+        return nearest
+    away, y, at = (0.5 + hold) * steps, np.empty_like(nearest), nearest[0]
+    for k, wanted in enumerate(x.tolist()):
+        at = y[k] = np.where(np.abs(wanted - at) > away, nearest[k], at)
+    return y
+
+
 def uniform(number: Array, seed: int) -> Array:
     """Numbers in [0, 1) by splitmix64 of (seed, number): the same whichever way they are asked for."""
     with np.errstate(over="ignore"):

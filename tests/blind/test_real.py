@@ -63,6 +63,15 @@ def flown(lab: RealLab, settings: Mapping[tuple[str, int], float], *, placed: bo
     )
 
 
+def test_a_shifted_weight_is_a_torque_wherever_gravity_turns_an_axis() -> None:
+    # Truth: the effect moves a share of gravity's moment, so that moment is the scale of its torque; 0 would be no scale.
+    turned = [plant for plant in PLANTS if plant.gravity]
+    assert len(turned) == 3
+    for plant in turned:
+        bench = draw_bench(plant, plant.read(plant.path.read_text(), plant.name), NOMINAL, np.random.default_rng(SEED))
+        assert bench.gravity_Nm > 0.0, plant.name
+
+
 @OF_TWO_PLANTS
 def test_without_effects_it_is_the_projects_plant(plant: RealPlant) -> None:
     """Free 1 s runs from the same states: bristles in the bearings against located friction, within a hundredth of what it reaches."""

@@ -23,6 +23,13 @@ def test_steps_of_an_input_are_found_near_their_size() -> None:
     assert min(abs(step / STEP_V - 1.0) for step in found) < 0.01
 
 
+def test_steps_that_hold_are_found_near_their_size() -> None:
+    # Truth: the rig holds its steps of 0.2 V by 0.15 of one beyond their half; candidates hold by nothing or by 0.12.
+    case = arm_case(arm_log({"input.quantization": {"q": STEP_V, "h": 0.15}}))
+    found = likely_steps(linearised(case, nominal_fit(case)), "input", (0.0, 0.12))
+    assert min(abs(step / STEP_V - 1.0) for step in found) < 0.01
+
+
 def scored(effect: str, power: float) -> ScoreTest:
     return ScoreTest(effect, {}, 0.0, 0.0, 0.0, power)
 

@@ -11,7 +11,7 @@ from sim.bind import BoundPlant, bind
 from sim.effect import coefficient
 from sim.loop import fly_law
 from sim.manoeuvres import hop
-from sim.paths.input_stages import Delay, DroppedFrames, Lag, SlewLimit
+from sim.paths.input_stages import Delay, DroppedFrames, Lag, Quantised, SlewLimit
 from sim.paths.output_stages import OutputDelay
 from sim.paths.path import Held, Trace
 from sim.runs.on_the_way import arriving
@@ -70,6 +70,19 @@ def test_many_ways_at_once_and_sample_by_sample_give_the_same() -> None:
 
 def held(values: list[float], edges: list[float]) -> Held:
     return Held(np.array(edges), np.array(values).reshape(-1, 1))
+
+
+def test_a_step_holds_until_its_command_is_further_than_half_a_step_and_its_hold_away() -> None:
+    # Truth: v stays while abs(u - v) <= (1/2 + 0.2) 2, else v is the nearest multiple of 2; a jump goes to the nearest at once.
+    u, v = [0.0, 1.3, 1.5, 0.7, 0.5, 3.3, 3.5, 9.0], [0.0, 0.0, 2.0, 2.0, 0.0, 4.0, 4.0, 8.0]
+    edges = np.arange(9.0).tolist()
+    whole, _ = Quantised(0, 2.0, 0.2)(held(u, edges), None)
+    np.testing.assert_array_equal(whole.values[:, 0], v)
+    first, memory = Quantised(0, 2.0, 0.2)(held(u[:4], edges[:5]), None)
+    second, _ = Quantised(0, 2.0, 0.2)(held(u[4:], edges[4:]), memory)
+    np.testing.assert_array_equal([*first.values[:, 0], *second.values[:, 0]], v)
+    plain, _ = Quantised(0, 2.0)(held(u, edges), None)
+    np.testing.assert_array_equal(plain.values[:, 0], [0.0, 2.0, 2.0, 0.0, 0.0, 4.0, 4.0, 8.0])
 
 
 def test_a_delay_moves_every_change_by_its_time_and_holds_the_first_input_before() -> None:
