@@ -77,6 +77,15 @@ class Linearisation:
         norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ self._pull - pull
         return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
 
+    def pulls(self, target: int) -> list[Array]:
+        """E'w by a unit added to one target, a state, over each step of each flight (steps,): for many disturbances at once."""
+        place = self._place(target)
+
+        def over(filter_input: FilterInput, run: Pass) -> Array:
+            return self.filter.pulls(filter_input, run, self.case.slots)[:, place]
+
+        return thread_map(over, self.filter_inputs, self.runs)
+
     def steps(self, target: int) -> tuple[Array, Scores]:
         """Instants (k,) and the scores of unit steps at them, in acceleration or in the output, of one target."""
         if target not in self.kept:

@@ -160,10 +160,9 @@ class Filter:
         """
         assert run.gains is not None
         F, K, H = run.gains
-        width, count, steps = max(slots) + 1, columns_of(values), len(filter_input.t_s)
+        count, steps = columns_of(values), len(filter_input.t_s)
         assert count <= self.lib.MAX_COLUMNS
-        counts = (filter_input.place >= 0) & (np.array(slots) >= 0)
-        places = (filter_input.place * width + np.array(slots))[counts]
+        counts, places = _counted(filter_input, slots)
         begins = np.append(0, np.cumsum(counts.sum(axis=1)))[[*range(0, steps, PART), steps]]
         room = np.zeros((int(np.diff(begins).max()), count))
         arrays: dict[str, NDArray[Any] | None] = {
@@ -172,7 +171,7 @@ class Filter:
             "H": H,
             "s": run.s.reshape(-1)[places],
             "target": np.array(targets, dtype=np.int32),
-            "place": np.where(counts, np.cumsum(counts).reshape(counts.shape) - 1, -1),
+            "place": _in_order(counts),
             "dw": room,
             "state": np.zeros((self.states, self.lib.MAX_COLUMNS)),
         }
@@ -184,6 +183,23 @@ class Filter:
             request.value = self.ffi.cast("void *", value.ctypes.data)
             self.lib.filter_respond(request)
             yield places[begin:end], room[: end - begin, : request.awake]
+
+    def pulls(self, filter_input: FilterInput, run: Pass, slots: Sequence[int]) -> Array:
+        """E'w by what is added to each state over each step (steps, states), E its answer in the whitened innovations w."""
+        assert run.gains is not None
+        counts, places = _counted(filter_input, slots)
+        found = np.empty((len(filter_input.t_s), self.states))
+        arrays: dict[str, NDArray[Any] | None] = {
+            **dict(zip("FKH", run.gains, strict=True)),
+            "s": run.s.reshape(-1)[places],
+            "w": run.w.reshape(-1)[places],
+            "place": _in_order(counts),
+            "pull": found,
+        }
+        request = self._request("adjoint_request *", arrays)
+        request.steps = len(filter_input.t_s)
+        self.lib.filter_adjoint(request)
+        return found
 
     def response(
         self, filter_input: FilterInput, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
@@ -212,6 +228,18 @@ def _given(filter_input: FilterInput, p: Array, x0: Array, noise: Noise) -> dict
         "forget": _double(noise.forget),
         "rub": _double(noise.rub),
     }
+
+
+def _counted(filter_input: FilterInput, slots: Sequence[int]) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+    """Which readings (steps, outputs) have a whitened innovation, and their places among those of a run, taken row by row."""
+    width, chosen = max(slots) + 1, np.array(slots)
+    counts = (filter_input.place >= 0) & (chosen >= 0)
+    return counts, (filter_input.place * width + chosen)[counts]
+
+
+def _in_order(counts: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The number of each reading that counts, -1 of the others."""
+    return np.where(counts, np.cumsum(counts).reshape(counts.shape) - 1, -1)
 
 
 def columns_of(values: Disturbances) -> int:

@@ -46,7 +46,16 @@ typedef struct {
     double *dw;                     /* [from base on][columns] */
 } response_request;
 
+/* The same backwards: what a unit added to each state over each step adds to the sum of products of all answers with `w`. */
+typedef struct {
+    int64_t steps;
+    const double *F, *K, *H, *s, *w; /* as above; w in the order of s */
+    const int64_t *place;            /* [steps][N_OUTPUTS] */
+    double *pull;                    /* [steps][N_STATES] */
+} adjoint_request;
+
 int32_t filter_run(filter_request *request);
 int32_t filter_respond(response_request *request);
+void filter_adjoint(adjoint_request *request);
 
 #endif

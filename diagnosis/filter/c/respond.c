@@ -83,3 +83,39 @@ int32_t filter_respond(response_request *r)
     }
     return 0;
 }
+
+/* The adjoint of respond_output: `e` holds what a unit of each state adds from behind the output on, then from before it on. */
+static void pull_output(const adjoint_request *r, int64_t step, int output, double *e)
+{
+    const double *const H = r->H + (step * N_OUTPUTS + output) * N, *const K = r->K + (step * N_OUTPUTS + output) * N;
+    const int64_t place = r->place[step * N_OUTPUTS + output];
+    bool seen = false;
+    for (int i = 0; i < N; i++)
+        seen |= H[i] != 0.0;
+    if (!seen)
+        return;
+    double nu = place < 0 ? 0.0 : r->w[place] / sqrt(r->s[place]);
+    for (int i = 0; i < N; i++)
+        nu -= K[i] * e[i];
+    for (int i = 0; i < N; i++)
+        if (H[i] != 0.0)
+            e[i] += H[i] * nu;
+}
+
+void filter_adjoint(adjoint_request *r)
+{
+    double e[N] = {0.0};
+    for (int64_t step = r->steps - 1; step >= 0; step--) {
+        double *const pull = r->pull + step * N;
+        const double *const F = r->F + step * N * N;
+        for (int i = 0; i < N; i++) {
+            pull[i] = e[i];
+            e[i] = 0.0;
+        }
+        for (int m = 0; m < N; m++)
+            for (int i = 0; i < N; i++)
+                e[i] += F[m * N + i] * pull[m];
+        for (int o = N_OUTPUTS - 1; o >= 0; o--)
+            pull_output(r, step, o, e);
+    }
+}

@@ -30,6 +30,17 @@ def test_steps_that_hold_are_found_near_their_size() -> None:
     assert min(abs(step / STEP_V - 1.0) for step in found) < 0.01
 
 
+def test_one_pass_backwards_tells_how_any_disturbance_of_a_state_meets_the_innovations() -> None:
+    # Truth: E'w with E the filter's own answer to a disturbance drawn at random, to rounding of some thousand sums.
+    linearisation = plain_linearisation()
+    rng = np.random.default_rng(5)
+    pushes = [rng.normal(size=len(filter_input.t_s)) for filter_input in linearisation.filter_inputs]
+    for target in range(len(linearisation.case.library.bound.model.states)):
+        answer = linearisation.answer([lambda part, push=push: push[part, None] for push in pushes], target)
+        met = sum(float(pull @ push) for pull, push in zip(linearisation.pulls(target), pushes, strict=True))
+        assert met == pytest.approx(float(answer[:, 0] @ linearisation.w), rel=1e-9)
+
+
 def scored(effect: str, power: float) -> ScoreTest:
     return ScoreTest(effect, {}, 0.0, 0.0, 0.0, power)
 
