@@ -1,6 +1,6 @@
 """The search for what is missing: single effects, then pairs and triples from the best of each size, every one fitted with the plant."""
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,12 +72,13 @@ def alone(
     found: dict[frozenset[str], FittedHypothesis] = {}
     if lossy is not None and case.library.losses is not None:
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
-    jobs = _promising(nominal, score_tests)[: decisions.SINGLES]
+    least = max(decisions.LEAST_GAIN, decisions.LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
+    jobs = _promising(nominal, score_tests, least)[: decisions.SINGLES]
     _fit_all(case, jobs, found, first)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
     fit_twins(case, found)
-    return Alone(found, first, frozenset(worth), linearisation, tuple(score_tests))
+    return Alone(found, first, worth, linearisation, tuple(score_tests))
 
 
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
@@ -86,7 +87,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
     for beam in decisions.BEAM:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
-        grown = _grown(case, best, names, worth)
+        grown, worth = _grown(case, best, names, worth)
         if not grown or not _fit_all(case, grown, found, best[0]):
             break
         exchange(case, found, worth)
@@ -118,9 +119,10 @@ def _rules(
     )
 
 
-def _worth(score_tests: Sequence[ScoreTest]) -> set[str]:
+def _worth(score_tests: Sequence[ScoreTest]) -> frozenset[str]:
     """Effects that are worth a costly score test beside others."""
-    return {entry.effect for entry in score_tests[: decisions.COSTLY_EFFECTS] if entry.gain > decisions.LEAST_GAIN}
+    best = score_tests[: decisions.COSTLY_EFFECTS]
+    return frozenset(entry.effect for entry in best if entry.gain > decisions.LEAST_GAIN)
 
 
 def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count: int) -> list[FittedHypothesis]:
@@ -140,9 +142,8 @@ def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count
     return kept if count < 3 or likeliest in kept else [*kept[: count - 1], likeliest]
 
 
-def _promising(start: Fit, score_tests: Sequence[ScoreTest]) -> list[Job]:
-    """Effects worth a fit from `start`, best first."""
-    least = max(decisions.LEAST_GAIN, decisions.LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
+def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> list[Job]:
+    """Effects that gain more than `least` from `start`, best first."""
     return [Job(start, entry) for entry in score_tests if entry.gain > least]
 
 
@@ -192,16 +193,29 @@ def certainties(fit: Fit) -> dict[str, float]:
     return sizes
 
 
-def _grown(case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], worth: Set[str]) -> list[Job]:
-    """The best hypotheses, each with the further effects that promise most beside it; none where the first has none."""
+def _grown(
+    case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], worth: frozenset[str]
+) -> tuple[list[Job], frozenset[str]]:
+    """The best hypotheses, each with the further effects that promise most beside it, none where the first has none; and the effects that
+    are `worth` a costly score test beside others.
 
-    def partners(fitted: FittedHypothesis) -> list[Job]:
-        score_tests = score_effects(case, linearised(case, fitted.fit), names, worth)
-        promising = [Job(fitted.fit, entry) for entry in score_tests if entry.gain > decisions.FURTHER_GAIN]
-        return promising[: decisions.PARTNERS]
+    Beside the best single effect all are asked: under a plant that lacks it others may show nothing.
+    """
 
-    jobs = thread_map(partners, best)
-    return [job for own in jobs for job in own] if jobs and jobs[0] else []
+    def asked(fitted: FittedHypothesis, worth: frozenset[str] | None) -> list[ScoreTest]:
+        return score_effects(case, linearised(case, fitted.fit), names, worth)
+
+    if not best:
+        return [], worth
+    single = len(best[0].effects) == 1
+    first = asked(best[0], None if single else worth)
+    worth = worth | _worth(first) if single else worth
+    others = thread_map(lambda fitted: asked(fitted, worth), best[1:])
+    jobs = [
+        _promising(fitted.fit, score_tests, decisions.FURTHER_GAIN)[: decisions.PARTNERS]
+        for fitted, score_tests in zip(best, (first, *others), strict=True)
+    ]
+    return ([job for own in jobs for job in own] if jobs[0] else []), worth
 
 
 def _fit_all(

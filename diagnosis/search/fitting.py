@@ -105,8 +105,7 @@ def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[floa
     """The start with the likeliest size near it, where slopes do not lead to it."""
     for reach in reaches:
         start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, TRIED))
-        start = _reshaped(case, start, effect)
-    return start
+    return _reshaped(case, start, effect)
 
 
 def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:

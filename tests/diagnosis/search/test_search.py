@@ -39,10 +39,10 @@ def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> FittedHyp
 
 def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, fly: Fly) -> None:
     # Rounded commands of 100 steps shift where they round with a step 1e-4 off, which costs 100 nats and bends all else.
-    truth = {"main_input.quantization": {"q": STEP_V}, "psi_sensor.offset": {"offset": OFFSET_RAD}}
+    truth = {"main_input.quantization": {"q": STEP_V, "h": 0.0}, "psi_sensor.offset": {"offset": OFFSET_RAD}}
     case = make_case(effect_library(plant), [fly(41, truth, 15.0, air=False)])
     nominal = nominal_fit(case)
-    off = {**truth, "main_input.quantization": {"q": STEP_V * (1.0 + 7e-4)}}
+    off = {**truth, "main_input.quantization": {"q": STEP_V * (1.0 + 7e-4), "h": 0.0}}
     end: FittedHypothesis | None = fitted(case, nominal, off)
     for _ in range(2):
         assert end is not None
