@@ -123,7 +123,12 @@ SURE_ROUGHNESS = Limit(
 LEAST_FAST_READINGS = Count(30, "readings", "fewer that are faster than a step a row show no scatter")
 
 # Is there a gap (detect)
-ALARM = Limit(0.01, "probability", "the contract's level of a false alarm", "the contract")
+ALARM = Limit(
+    1e-3,
+    "probability",
+    "a tenth of the contract's level: chances hold for the model's noise, and rigs have another",
+    "six fresh sets of three families: two rigs without effects lay between 1e-3 and 1e-2, of effects of two floors and more one",
+)
 PLAIN_TO_SEE = Limit(
     40.0,
     "nats",

@@ -25,7 +25,7 @@ def test_a_run_of_the_stated_plant_shows_no_gap() -> None:
     first = rules.index("largest_gain")
     assert rules[first : first + 4] == ["largest_gain", "parameters_together", "parameter_furthest", "false_alarm"]
     told = diagnosis.decisions[first + 3]
-    assert (told.value, told.limit, told.outcome) == (diagnosis.false_alarm_probability, 0.01, "no gap")
+    assert (told.value, told.limit, told.outcome) == (diagnosis.false_alarm_probability, 0.001, "no gap")
 
 
 def test_a_rub_is_found_with_its_level(rubbed: Result) -> None:
