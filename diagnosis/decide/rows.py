@@ -6,7 +6,6 @@ Where the plant as stated is far from its rig it is asked with the dry friction 
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import chain
 from typing import Any
 
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.decide.wiring import fitted_or_none, is_strained
 from diagnosis.filter.filter_input import READINGS, FilterInput, beginning
-from diagnosis.fit.gauss_newton import Fit, likelihood_of
+from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import gain_over, settled
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
@@ -97,22 +96,18 @@ class _Asked:
     case: Case
     usual: Fit
 
-    @cached_property
-    def starts(self) -> tuple[Hypothesis, ...]:
-        """The plant as stated, and as the logs bent it, under noise that forgives both."""
-        bent = self.usual.hypothesis
-        noise = np.full_like(bent.process_noise, decisions.FIRST_PROCESS_NOISE)
-        return tuple(replace(bent, theta=theta, process_noise=noise) for theta in (0.0 * bent.theta, bent.theta))
-
-    def raw(self, slip: Misplaced) -> float:
-        """What a move gains before anything is fitted to it."""
-        other = moved(self.case, slip)
-        return max(likelihood_of(other, start) - likelihood_of(self.case, start) for start in self.starts)
+    def promised(self, slip: Misplaced) -> float:
+        """What a move gains, to first order in all that the plant's fit may then move: L + b' A^-1 b / 2, from where that fit is."""
+        at = fit(moved(self.case, slip), self.usual.hypothesis, rounds=0)
+        if at is None:
+            return -np.inf
+        further = 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull))
+        return at.log_posterior - self.usual.log_posterior + further
 
     def moved(self, slip: Misplaced) -> Moved:
         """What a move gains once the plant is fitted to it."""
         other = moved(self.case, slip)
-        end = _settled_or_none(other, max(self.starts, key=lambda start: likelihood_of(other, start)))
+        end = _settled_or_none(other, self.usual.hypothesis)
         if end is None:
             return Moved(slip, -np.inf, False)
         return Moved(slip, gain_over(self.case, self.usual, end), not is_strained(other, end))
@@ -129,15 +124,11 @@ def misplaced(asked: _Asked) -> tuple[Moved | None, tuple[Moved, ...]]:
     nothing where that is surely lost."""
     model = asked.case.library.bound.model
     singles = tuple(_one_column(len(model.inputs), len(model.outputs)))
-    raw = dict(zip(tried := (*asked.commands, *singles), thread_map(asked.raw, tried), strict=True))
-    forgiving = bool(model.axes) and not is_strained(asked.case, asked.usual)
-    seen = forgiving and max(raw[slip] for slip in asked.commands) < decisions.ROWS_SURELY_LOST
-    asks = max((raw[slip] for slip in singles), default=-np.inf) > 0.0
-    likelier = sorted(
-        (slip for slip in singles if asks and raw[slip] > decisions.ROWS_SURELY_LOST), key=lambda slip: -raw[slip]
-    )
-    likelier = likelier[: decisions.ROWS_TRIED]
-    tried = (*(() if seen else asked.commands), *likelier)
+    promised = dict(zip(tried := (*asked.commands, *singles), thread_map(asked.promised, tried), strict=True))
+    sound = bool(model.axes) and not is_strained(asked.case, asked.usual)
+    seen = sound and max(promised[slip] for slip in asked.commands) < decisions.ROWS_SURELY_LOST
+    likelier = sorted((slip for slip in singles if promised[slip] > 0.0), key=lambda slip: -promised[slip])
+    tried = (*(() if seen else asked.commands), *likelier[: decisions.ROWS_TRIED])
     ones = dict(zip(tried, thread_map(asked.moved, tried), strict=True))
     commands = tuple(one for slip, one in ones.items() if slip in asked.commands)
     for one in sorted(ones.values(), key=lambda one: (-one.follows, -one.gain)):
