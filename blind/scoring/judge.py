@@ -167,7 +167,7 @@ def _parameter_errors(truth: Truth, ranked: Sequence[RankedAnswer]) -> tuple[flo
         return ()
     errors = []
     for symbol, true in truth.effects[0].parameters.items():
-        if true.main and symbol in named[0].parameters:
+        if true.main and true.scale > 0.0 and symbol in named[0].parameters:
             estimate = named[0].parameters[symbol]
             if true.either_sign:
                 errors.append(abs(abs(estimate) - abs(true.value)) / true.scale)
