@@ -423,6 +423,12 @@ ROWS_GAIN = Limit(
     "commands moved by whole rows must be likelier by so much",
     "flights of the CE150 with late commands gained 60 to 210, ten published recordings 4 at most, a sealed case without any effect 20",
 )
+ROWS_REFUSED = Limit(
+    50.0,
+    "nats",
+    "of a smaller gain one is told only: a plant that is faster than its file states gains some too",
+    "flights of the CE150 with late commands gained 60 to 210, the yaw of a Quanser Aero 45",
+)
 ROWS_TRIED = Count(4, "moves", "fitted, the likeliest before anything is: time")
 ROWS_SURELY_LOST = Limit(
     -60.0,

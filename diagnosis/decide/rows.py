@@ -75,7 +75,7 @@ def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LAT
     found, commands = misplaced(_Asked(short, usual))
     if found is None:
         return _unseen(commands)
-    if not (found.follows and found.slip.way in ways):
+    if not (found.follows and found.slip.way in ways and found.gain > decisions.ROWS_REFUSED):
         return (_note(case, found),)
     remedy = ", or ".join(_move(case, slip) for slip in (found.slip, *found.alike))
     if found.slip.way == EARLY:
