@@ -16,10 +16,10 @@ from codegen.law_terms import UNITS, Names, array_name, coefficients
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
 from codegen.self_test import SelfTest, self_test
-from codegen.twin import FULL_SCALE_V, PWM_TICKS, Float32Twin
+from codegen.twin import PWM_TICKS, Float32Twin
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.loops import Loop
+from records.loops import Loop, full_scales_V
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 ARITHMETIC_CODES = {"float32": 0, "fixed": 1}
@@ -87,11 +87,14 @@ def demand_drivable(table: FlownTable) -> None:
     for loop, axis in zip(table.loops, table.axes, strict=True):
         if loop.pins is None:
             continue
-        least_V = 0.0 if loop.pins.direction is None else -FULL_SCALE_V
-        if not (least_V <= axis.u_min_V and axis.u_max_V <= FULL_SCALE_V and axis.u_safe_V == 0.0):
+        scale_V = loop.full_scale_V
+        least_V = 0.0 if loop.pins.direction is None else -scale_V
+        if not (least_V <= axis.u_min_V and axis.u_max_V <= scale_V and axis.u_safe_V == 0.0):
             got = f"{axis.u_min_V:g} to {axis.u_max_V:g} V, {axis.u_safe_V:g} V at rest"
-            expected = f"{least_V:g} to {FULL_SCALE_V:g} V with 0 V among them: full scale of its PWM"
-            remedy = "narrow u_min_V and u_max_V in its section of [design], name a direction, or leave [board] out"
+            expected = f"{least_V:g} to {scale_V:g} V with 0 V among them: full scale of its PWM"
+            remedy = (
+                "narrow u_min_V and u_max_V in its section of [design], or name a direction or full_scale_V in [board]"
+            )
             raise BadInput(f"voltages of {loop.input}", f"loop {loop.axis} on {loop.pins.pwm}", got, expected, remedy)
 
 
@@ -151,12 +154,18 @@ def shared_context(table: FlownTable, arithmetic: str) -> dict[str, Any]:
         "plant": table.plant,
         "sample_period_us": round(table.sample_period_s * 1e6),
         "pwm_ticks": PWM_TICKS,
-        "full_scale_V": FULL_SCALE_V,
+        "full_scale_note": " and ".join(f"{scale_V} V" for scale_V in full_scales_V(table.loops)),
+        "duty_names": _duty_names(full_scales_V(table.loops)),
         "loops": table.loops,
         "whose": {1: f"the {table.loops[0].axis}", 2: "both axes"}.get(len(table.loops), "all axes"),
         "schedule": _schedule_names(table),
         "last_accepted_fields": last_accepted(table.loops),
     }
+
+
+def _duty_names(scales_V: tuple[float, ...]) -> dict[float, str]:
+    """The function of the C text that makes ticks of volts, by full scale."""
+    return {scale_V: "duty" if len(scales_V) == 1 else f"duty_{place}" for place, scale_V in enumerate(scales_V, 1)}
 
 
 def _schedule_names(table: FlownTable) -> ScheduleNames | None:
@@ -175,7 +184,6 @@ def test_context(table: FlownTable, test: SelfTest) -> dict[str, Any]:
 def frame_context(axes: Sequence[Axis], axis_state_fields: Sequence[str]) -> dict[str, Any]:
     """What law_frame.c.j2 takes of the table of any float32 law."""
     return {
-        "half_ticks_per_V": 2.0 * PWM_TICKS / FULL_SCALE_V,
         "plausible_V": PLAUSIBLE_V,
         "least_schedule_rad": LEAST_SCHEDULE_RAD,
         "axis_state_fields": axis_state_fields,

@@ -28,7 +28,6 @@ from records.table import ControllerTable
 Bits = NDArray[np.uint32]
 
 PWM_TICKS = 3200
-FULL_SCALE_V = 10.0
 
 
 def same_bits(value: Any, other: Any) -> Any:
@@ -110,6 +109,7 @@ class Float32Twin:
         self.law: Any = law
         self._equations = equations
         self._resolutions_rad = [np.float32(axis.resolution_rad) for axis in table.axes]
+        self._full_scales_V = [loop.full_scale_V for loop in table.loops]
         self._loops = len(table.loops)
         self.state_words = state_size(equations.AxisState, self._loops)
         self.reset(*[0.0] * self._loops)
@@ -154,7 +154,7 @@ class Float32Twin:
 
     def duty(self, loop: int, u_V: float) -> int:
         """Signed PWM ticks of a voltage of the loop at this place."""
-        return _duty(np.float32(u_V), self.law.axes[loop].u_safe_V)
+        return _duty(np.float32(u_V), self.law.axes[loop].u_safe_V, self._full_scales_V[loop])
 
     def voltage_word(self, u_V: float) -> int:
         """The bits of a voltage."""
@@ -175,11 +175,11 @@ class Float32Twin:
     lanes: Any = Float32Lanes()
 
 
-def _duty(u_V: np.float32, safe_V: np.float32) -> int:
-    """Ticks, full scale PWM_TICKS at FULL_SCALE_V, to the nearest, halves away from zero; total for every float."""
-    full_scale_V = np.float32(FULL_SCALE_V)
+def _duty(u_V: np.float32, safe_V: np.float32, scale_V: float) -> int:
+    """Ticks, PWM_TICKS at a full scale of `scale_V`, to the nearest, halves away from zero; total for every float."""
+    full_scale_V = np.float32(scale_V)
     applied_V = Float32Scalars().saturate(u_V, -full_scale_V, full_scale_V, safe_V)
-    half_ticks = int(applied_V * np.float32(2.0 * PWM_TICKS / FULL_SCALE_V))
+    half_ticks = int(applied_V * np.float32(2.0 * PWM_TICKS / scale_V))
     return (half_ticks + 1) // 2 if half_ticks >= 0 else -((1 - half_ticks) // 2)
 
 

@@ -3,23 +3,69 @@
 from dataclasses import dataclass
 
 MOST_LOOPS = 4
+FULL_SCALE_V = 10.0  # of a PWM that nothing else is said of: what the helicopter's drivers give at full duty
+ADC_CODES = 4096  # 12 bits, as the converters of all boards have
+
+
+@dataclass(frozen=True)
+class Analogue:
+    """A sensor on the converter's input `pin`: what it measures [rad] where the converter reads 0 V, and where it reads its reference.
+
+    From there on it is a sensor of counts, as an encoder is: count = +-code + `origin_counts`, and its zero is on a whole count.
+    """
+
+    pin: str
+    zero_scale_rad: float
+    full_scale_rad: float
+
+    @property
+    def step_rad(self) -> float:
+        """What one code is."""
+        return abs(self.full_scale_rad - self.zero_scale_rad) / ADC_CODES
+
+    @property
+    def sign(self) -> int:
+        """-1 where the angle falls as the voltage rises."""
+        return 1 if self.full_scale_rad > self.zero_scale_rad else -1
+
+    @property
+    def origin_counts(self) -> int:
+        """The count at code 0."""
+        return round(self.zero_scale_rad / self.step_rad)
+
+    @property
+    def rails_counts(self) -> tuple[int, int]:
+        """The least and the largest count, those of the first and the last code: what a torn wire reads."""
+        ends = (self.counts(0), self.counts(ADC_CODES - 1))
+        return min(ends), max(ends)
+
+    def counts(self, code: int) -> int:
+        """The count at a code."""
+        return self.sign * code + self.origin_counts
+
+    def code(self, counts: int) -> int:
+        """The code at a count, the nearest of those that there are."""
+        return min(max(self.sign * (counts - self.origin_counts), 0), ADC_CODES - 1)
 
 
 @dataclass(frozen=True)
 class Pins:
-    """Where a loop hangs on a board: both inputs of its `encoder`, the `pwm` of its driver, and the driver's `direction`, by their names.
+    """Where a loop hangs on a board: inputs of its `encoder` or its `analogue` sensor, the driver's `pwm` and `direction`.
 
-    The direction is high for negative inputs; None is a driver that turns one way only.
+    The direction is high for negative inputs; None is a driver that turns one way only. Full duty gives `full_scale_V`.
     """
 
-    encoder: tuple[str, str]
+    encoder: tuple[str, str] | None
     pwm: str
     direction: str | None = None
+    analogue: Analogue | None = None
+    full_scale_V: float = FULL_SCALE_V
 
     @property
     def names(self) -> tuple[str, ...]:
         """All of them."""
-        return (*self.encoder, self.pwm, *([] if self.direction is None else [self.direction]))
+        sensor = (self.encoder or ()) if self.analogue is None else (self.analogue.pin,)
+        return (*sensor, self.pwm, *([] if self.direction is None else [self.direction]))
 
 
 @dataclass(frozen=True)
@@ -56,6 +102,16 @@ class Loop:
         return f"{self.symbol}_counts"
 
     @property
+    def full_scale_V(self) -> float:
+        """What full duty gives."""
+        return FULL_SCALE_V if self.pins is None else self.pins.full_scale_V
+
+    @property
+    def analogue(self) -> Analogue | None:
+        """The analogue sensor on the board, where the loop has one."""
+        return None if self.pins is None else self.pins.analogue
+
+    @property
     def duty(self) -> str:
         """What the command is on the board's PWM."""
         return f"duty_{self.motor}_ticks"
@@ -68,6 +124,11 @@ LOOPS = (
 )
 
 
+def full_scales_V(loops: tuple[Loop, ...]) -> tuple[float, ...]:
+    """Those of `loops`, each once."""
+    return tuple(dict.fromkeys(loop.full_scale_V for loop in loops))
+
+
 def has_pins(loops: tuple[Loop, ...]) -> bool:
-    """Whether a board has an encoder and an output for each of `loops`; others fly with the host in the loop alone."""
+    """Whether a board has a sensor and an output for each of `loops`; others fly with the host in the loop alone."""
     return all(loop.pins is not None for loop in loops)

@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from codegen.fixed.constants import FixedLaw, FixedPolynomial, FixedTerm, fixed_constants, word_number
+from codegen.fixed.duty import duty_format
 from codegen.fixed.equations import fixed_axis_state
 from codegen.fixed.formats import FILTERED_BITS, CountFormat, LawFormats, count_format, law_formats
 from codegen.fixed.polynomials import PolynomialFormat
 from codegen.fixed.ranges import OverflowProof, Range, prove_no_overflow
-from codegen.fixed.twin import duty_ratio
 from codegen.law_terms import UNITS, Names
-from codegen.twin import FULL_SCALE_V
-from records.loops import Loop
+from records.loops import Loop, full_scales_V
 from records.table import ControllerTable
 
 
@@ -79,7 +78,6 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
     proof = prove_no_overflow(table)
     law, formats = fixed_constants(table, word_number), law_formats(table)
     axes = tuple(_axis(table, index, law, formats, proof) for index in range(len(table.loops)))
-    factor, shift = duty_ratio(formats.voltage_places)
     return {
         "formats": formats,
         "voltage_limits": _voltage_limits(table, law),
@@ -103,10 +101,7 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
         "bits": {"filtered": FILTERED_BITS, "error": law.error_bits, "s": law.s_bits, "w": law.w_bits},
         "schedule_steps": 2**law.schedule_doublings,
         "reference_steps": 2**law.reference_doublings,
-        "full_scale": word_number(FULL_SCALE_V, formats.voltage_places),
-        "duty_factor": factor,
-        "duty_shift": shift,
-        "duty_half": 2 ** (shift - 1),
+        "duty_forms": {scale_V: duty_format(scale_V, formats.voltage_places) for scale_V in full_scales_V(table.loops)},
     }
 
 

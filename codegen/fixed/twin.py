@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from codegen.fixed.arithmetic import LaneWords, Scalars
 from codegen.fixed.constants import fixed_constants, word_number
+from codegen.fixed.duty import duty, duty_format
 from codegen.fixed.equations import fixed_axis_state, law_reset, law_step, state_from_words
 from codegen.fixed.formats import MISSING, count_format, law_formats, value_of, word_of
 from codegen.law_frame import LawInput, LawState, state_size, words_from_state
-from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.table import ControllerTable
 
 Bits = NDArray[np.uint32]
@@ -65,7 +65,8 @@ class FixedTwin:
 
     def duty(self, loop: int, u_V: float) -> int:
         """Signed PWM ticks of a voltage of the loop at this place."""
-        return duty(self.voltage_word(u_V), self.law.axes[loop].u_safe_V, self.formats.voltage_places)
+        form = duty_format(self._table.loops[loop].full_scale_V, self.formats.voltage_places)
+        return duty(self.voltage_word(u_V), self.law.axes[loop].u_safe_V, form)
 
     def voltage_word(self, u_V: float) -> int:
         """The 32 bits of a voltage, as an unsigned integer."""
@@ -84,27 +85,6 @@ class FixedTwin:
         for index, word in enumerate(words_from_state(state)):
             words[:, index] = word
         return words.astype(np.uint32)
-
-
-def duty_ratio(voltage_places: int) -> tuple[int, int]:
-    """PWM ticks per voltage word of `voltage_places` as factor / 2^shift, in lowest terms; ValueError unless a volt is whole ticks."""
-    ratio, shift = PWM_TICKS / FULL_SCALE_V, voltage_places
-    if ratio != int(ratio):
-        raise ValueError(f"{PWM_TICKS} ticks at {FULL_SCALE_V} V are not whole ticks per volt")
-    factor = int(ratio)
-    while factor % 2 == 0 and shift > 1:
-        factor, shift = factor // 2, shift - 1
-    return factor, shift
-
-
-def duty(word: int, safe_V: int, voltage_places: int) -> int:
-    """Ticks, full scale PWM_TICKS at FULL_SCALE_V, to the nearest, halves away from zero; MISSING gives the safe value's."""
-    u_V = word - 2**32 if word >= 2**31 else word
-    full_scale = word_number(FULL_SCALE_V, voltage_places)
-    applied = Scalars().clamp(safe_V if u_V == MISSING else u_V, -full_scale, full_scale)
-    factor, shift = duty_ratio(voltage_places)
-    ticks = (abs(applied) * factor + (1 << shift - 1)) >> shift
-    return ticks if applied >= 0 else -ticks
 
 
 def _signed(bits: Bits) -> NDArray[np.int64]:

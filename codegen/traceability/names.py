@@ -10,9 +10,9 @@ from codegen.law import ARITHMETIC_CODES
 from codegen.law_frame import without_vanishing_powers
 from codegen.law_terms import UNITS, Names, array_name, coefficients
 from codegen.traceability.literals import LEFT_OUT, LITERALS, Literal
-from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from codegen.twin import PWM_TICKS
 from records.errors import BadInput
-from records.loops import Loop
+from records.loops import Loop, full_scales_V
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 # The parameters of the helicopter's equations that are the limits of an input.
@@ -102,7 +102,8 @@ def _constants(table: ControllerTable) -> Iterator[Constant]:
         for end, value in (("min", table.schedule.min_rad), ("max", table.schedule.max_rad)):
             made_as = f"{design} {loop.symbol}_{end}_rad, or the stop of the plant"
             yield Constant(f"LAW_{Names(loop).angle}_{end.upper()}_RAD", value, "rad", made_as)
-    yield Constant("LAW_PWM_TICKS", PWM_TICKS, "1", f"constant of the board: its timer's ticks of {FULL_SCALE_V:g} V")
+    scales = " and ".join(f"{scale_V:g} V" for scale_V in full_scales_V(table.loops))
+    yield Constant("LAW_PWM_TICKS", PWM_TICKS, "1", f"constant of the board: its timer's ticks of {scales}")
     yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
     yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
     yield Constant("LEAST_SCHEDULE_RAD", LEAST_SCHEDULE_RAD, "rad", "constant of the method: below it Psi counts as 0")

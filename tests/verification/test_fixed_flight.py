@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from codegen.twin import PWM_TICKS
 from design.law import law_reset, law_step
 from records.log import RunLog
+from records.loops import FULL_SCALE_V
 from records.plant import load_plant
 from records.table import ControllerTable
 from sim.bind import BoundPlant, bind

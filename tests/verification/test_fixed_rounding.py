@@ -10,8 +10,9 @@ import pytest
 
 from codegen.fixed.constants import fixed_constants
 from codegen.fixed.twin import FixedTwin
-from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from codegen.twin import PWM_TICKS
 from design.law import law_reset, law_step
+from records.loops import FULL_SCALE_V
 from records.verification import RoundingBound
 from tests.law_tables import ce150_table, dense_table
 from verification.fixed_rounding import fixed_rounding_bound

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from codegen import law_frame
 from codegen.law_equations import scheduled_law
 from codegen.law_frame import prefilter
-from codegen.twin import FULL_SCALE_V, PWM_TICKS, Float32Twin
+from codegen.twin import PWM_TICKS, Float32Twin
 from design.law import law_reset, law_step
 from design.settings import read_settings
 from design.table import design
 from records.log import RunLog
+from records.loops import FULL_SCALE_V
 from records.plant import load_plant
 from records.table import ControllerTable
 from sim.bind import bind

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from codegen.fixed.constants import FixedLaw, fixed_constants, word_number
+from codegen.fixed.duty import DutyFormat, duty_format
 from codegen.fixed.equations import polynomial, powers_of
 from codegen.fixed.formats import FILTERED_BITS, MISSING, count_format, law_formats
-from codegen.fixed.twin import duty_ratio
-from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from codegen.twin import PWM_TICKS
+from records.loops import full_scales_V
 from records.table import ControllerTable
 from verification.proofs.totality.questions import Question
 
@@ -232,14 +233,18 @@ def _outputs(table: ControllerTable, law: FixedLaw[int]) -> Iterator[Question]:
         claim = f"the {axis.name} voltage is within its limits whatever the word before them"
         fit = f"(and (fits a {low}) (fits {high} (greatest a {low})))"
         yield Question(claim, _refute(f"(between (clamp a {low} {high}) {low} {high})", fit))
-    factor, shift = duty_ratio(formats.voltage_places)
-    full = word_number(FULL_SCALE_V, formats.voltage_places)
-    applied = f"(held (accepted a b) {_word(-full)} {_word(full)})"
-    magnitude = f"(let ((v {applied})) (ite (bvslt v #x00000000) (bvneg v) v))"
-    ticks = f"(bvlshr (bvadd (bvmul {magnitude} {_word(factor)}) {_word(2 ** (shift - 1))}) {_word(shift)})"
-    yield Question("duties are within full scale whatever the words", _refute(f"(bvule {ticks} {_word(PWM_TICKS)})"))
+    for scale_V in full_scales_V(table.loops):
+        yield _duty(duty_format(scale_V, formats.voltage_places))
     for loop, row in zip(table.loops, table.axes, strict=True):
         yield _counts(loop.axis, count_format(formats, row), law)
+
+
+def _duty(form: DutyFormat) -> Question:
+    applied = f"(held (accepted a b) {_word(-form.full)} {_word(form.full)})"
+    magnitude = f"(let ((v {applied})) (ite (bvslt v #x00000000) (bvneg v) v))"
+    coarse = f"(bvlshr {magnitude} {_word(form.coarse)})" if form.coarse else magnitude
+    ticks = f"(bvlshr (bvadd (bvmul {coarse} {_word(form.factor)}) {_word(form.half)}) {_word(form.shift)})"
+    return Question("duties are within full scale whatever the words", _refute(f"(bvule {ticks} {_word(PWM_TICKS)})"))
 
 
 def _counts(name: str, form: Any, law: FixedLaw[int]) -> Question:

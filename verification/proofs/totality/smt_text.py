@@ -14,7 +14,8 @@ import numpy as np
 from codegen.law_constants import AxisConstants, law_constants
 from codegen.law_frame import polynomial, schedule_ranges
 from codegen.numbers import float32_bits
-from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from codegen.twin import PWM_TICKS
+from records.loops import full_scales_V
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, ControllerTable
 from verification.proofs.totality.questions import Question
 
@@ -62,7 +63,7 @@ def questions(table: ControllerTable, law_c: str) -> Iterator[Question]:
     law = law_constants(table, float)
     for loop, axis in zip(table.loops, law.axes, strict=True):
         yield _saturation(loop.axis, axis)
-    yield _duty()
+    yield from map(_duty, full_scales_V(table.loops))
     yield from coefficient_ranges(table, law_c)
 
 
@@ -114,10 +115,10 @@ def _saturation(name: str, axis: AxisConstants[float]) -> Question:
     return Question(claim, _refute(f"(within (saturate a {low} {high} {safe}) {low} {high})"))
 
 
-def _duty() -> Question:
-    """duty() of law.c, for any bits and any safe voltage within full scale."""
-    low, high = _bits(-FULL_SCALE_V), _bits(FULL_SCALE_V)
-    product = f"(fp.mul RNE (float (saturate a {low} {high} b)) {_term(2.0 * PWM_TICKS / FULL_SCALE_V)})"
+def _duty(full_scale_V: float) -> Question:
+    """What law.c makes of voltages with this full scale, for any bits and any safe voltage within full scale."""
+    low, high = _bits(-full_scale_V), _bits(full_scale_V)
+    product = f"(fp.mul RNE (float (saturate a {low} {high} b)) {_term(2.0 * PWM_TICKS / full_scale_V)})"
     one, two = "#x00000001", "#x00000002"
     away = f"(ite (bvsge h #x00000000) (bvsdiv (bvadd h {one}) {two}) (bvneg (bvsdiv (bvsub {one} h) {two})))"
     ticks = f"(let ((h ((_ fp.to_sbv 32) RTZ {product}))) {away})"
