@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from records.loops import ADC_CODES
 from rig.emulator.answers import (
     BoardConfig,
     CallResult,
@@ -37,7 +38,7 @@ class EmulatedBoard:
     """One STM32G071 with an image in its flash; several boards may live side by side.
 
     Time is virtual and moves only in `run_*` calls; the same calls give the same cycles and bytes again.
-    Limits: GPIO A-C, TIM1/2/3/6/7, USART2 (8N1, no FIFO), IWDG, RCC, SysTick, NVIC; any other register stops the run.
+    Limits: GPIO A-C, TIM1/2/3/6/7, ADC, USART2 (8N1, no FIFO), IWDG, RCC, SysTick, NVIC; any other register stops the run.
     """
 
     def __init__(self, elf: bytes | Path | Image, config: BoardConfig | None = None) -> None:
@@ -195,6 +196,14 @@ class EmulatedBoard:
     def set_encoder(self, timer: int, counts: int) -> None:
         """Turn the encoder on TIM2 or TIM3 to an absolute count; CNT becomes `counts` modulo ARR + 1."""
         self._lib.emulator_set_encoder(self._machine, TIMER_INDEX[timer], counts)
+
+    def set_analogue(self, channel: int, code: int) -> None:
+        """Put on a channel of the converter the voltage that it reads as `code`, 0 to 4095; what is beyond reads as the end."""
+        self._lib.emulator_set_analogue(self._machine, channel, min(max(code, 0), ADC_CODES - 1))
+
+    def silence_converter(self) -> None:
+        """Break the converter: no conversion ends from now on."""
+        self._lib.emulator_silence_converter(self._machine)
 
     def timer_register(self, timer: int, word: int) -> int:
         """A timer's register by word offset (CNT is 9)."""

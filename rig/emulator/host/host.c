@@ -171,6 +171,10 @@ uint32_t emulator_receive(machine *m, uint8_t *bytes, uint64_t *end_ps, uint8_t 
     return count;
 }
 
+void emulator_set_analogue(machine *m, uint32_t channel, uint32_t code) { adc_set_code(m, channel, code); }
+
+void emulator_silence_converter(machine *m) { adc_silence(m); }
+
 void emulator_set_encoder(machine *m, uint32_t index, int64_t counts) { timer_set_encoder(m, index, counts); }
 
 uint32_t emulator_timer_register(machine *m, uint32_t index, uint32_t word) {

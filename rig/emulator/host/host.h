@@ -45,6 +45,8 @@ void emulator_stick(machine *m, uint32_t to_host, uint32_t low);
 void emulator_send(machine *m, const uint8_t *bytes, uint32_t count, uint64_t earliest_ps);
 uint64_t emulator_line_free_ps(machine *m);
 uint32_t emulator_receive(machine *m, uint8_t *bytes, uint64_t *end_ps, uint8_t *errors, uint32_t most);
+void emulator_set_analogue(machine *m, uint32_t channel, uint32_t code);
+void emulator_silence_converter(machine *m);
 void emulator_set_encoder(machine *m, uint32_t index, int64_t counts);
 uint32_t emulator_timer_register(machine *m, uint32_t index, uint32_t word);
 void emulator_gpio(machine *m, uint32_t port, uint32_t *mode, uint32_t *output);

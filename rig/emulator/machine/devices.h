@@ -45,6 +45,15 @@ typedef struct {
 
 typedef struct { uint32_t pr, rlr, from, winr; bool unlocked, running; uint64_t reload_ps, busy_until_ps; uint32_t busy; } iwdg_state;
 
+#define ADC_CHANNELS 19u
+
+/* RM0444 15.12: registers by word offset, up to DR. A conversion, or a calibration, ends at cycle `due` with the code `taken`. */
+typedef struct {
+    uint32_t reg[17], code[ADC_CHANNELS], taken;
+    uint64_t powered, calibrated, due;
+    bool silent;
+} adc_state;
+
 /* The other end of the serial line, at its own bit length. */
 typedef struct { line *to_board, *to_host; inbox *inbox; receiver rx; uint64_t bit_ps; } host_side;
 
@@ -58,6 +67,7 @@ typedef struct {
     timer_state timer[5];
     usart_state usart;
     iwdg_state iwdg;
+    adc_state adc;
     host_side host;
     bool system_memory_at_0; /* as the boot loader leaves it; else flash is seen there (SYSCFG_CFGR1.MEM_MODE) */
     uint32_t reset_request; /* a reset_cause, done between two instructions */

@@ -45,6 +45,7 @@ void machine_reset(machine *m, uint32_t cause) {
     timers_reset(m);
     usart_reset(m);
     iwdg_reset(m);
+    adc_reset(m);
     m->device.system_memory_at_0 = false;
     core_reset(m, 0);
     bool at_power_on = m->count.resets_total == 1;

@@ -18,6 +18,7 @@ static const block BLOCKS[] = {
     {0x40003000u, 0x14, 0, 0, 0, iwdg_read, iwdg_write},
     {0x40004400u, 0x30, APBENR1, 17, 0, usart_read, usart_write},  /* USART2 */
     {0x40007000u, 0x80, APBENR1, 28, 0, pwr_read, pwr_write},
+    {0x40012400u, 0x30C, APBENR2, 20, 0, adc_read, adc_write},     /* ADC */
     {0x40012C00u, 0x6C, APBENR2, 11, 0, timer_read, timer_write},  /* TIM1 */
     {0x40015800u, 0x14, APBENR1, 27, 0, dbg_read, dbg_write},
     {0x40021000u, 0x64, 0, 0, 0, rcc_read, rcc_write},

@@ -44,6 +44,8 @@ bool usart_read(machine *m, uint32_t index, uint32_t offset, uint32_t *value);
 bool usart_write(machine *m, uint32_t index, uint32_t offset, uint32_t value);
 bool iwdg_read(machine *m, uint32_t index, uint32_t offset, uint32_t *value);
 bool iwdg_write(machine *m, uint32_t index, uint32_t offset, uint32_t value);
+bool adc_read(machine *m, uint32_t index, uint32_t offset, uint32_t *value);
+bool adc_write(machine *m, uint32_t index, uint32_t offset, uint32_t value);
 
 /* Values after a reset. */
 void rcc_reset(machine *m);
@@ -51,6 +53,7 @@ void gpio_reset(machine *m);
 void timers_reset(machine *m);
 void usart_reset(machine *m);
 void iwdg_reset(machine *m);
+void adc_reset(machine *m);
 
 /* Things that happen at their time. */
 void timer_event(machine *m, uint32_t index);
@@ -70,6 +73,10 @@ void iwdg_reschedule(machine *m);
 
 /* The host turns an encoder to an absolute count. */
 void timer_set_encoder(machine *m, uint32_t index, int64_t counts);
+
+/* The host puts a voltage on a channel, as the code that it converts to; or breaks the converter. */
+void adc_set_code(machine *m, uint32_t channel, uint32_t code);
+void adc_silence(machine *m);
 
 /* The host's end of the serial line. */
 void host_send(machine *m, uint8_t byte, uint64_t earliest_ps);
