@@ -1,31 +1,41 @@
-"""Section [board] of a plant file: on which pins each loop's encoder and driver hang, checked against what the chip has.
+"""Section [board] of a plant file: on which pins each loop's sensor and driver hang, checked against what the chip has.
 
     [board]
     theta_rad = { encoder = ["PA0", "PA1"] }
     u_V = { pwm = "PA8", direction = "PB0" }      # without direction: a driver that turns one way only
 
-Without the section the law flies with the host in the loop alone.
+or, for a sensor that gives a voltage (a potentiometer, say), what it measures at 0 V and at the converter's reference:
+
+    theta_rad = { analogue = "PA4", zero_scale_rad = -1.571, full_scale_rad = 1.571 }
+
+Full duty gives what the plant's input takes at most, or `full_scale_V` beside `pwm`. Without the section the law flies with the host in
+the loop alone.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from records.board import STM32G071, Board
 from records.errors import BadInput
-from records.loops import Loop, Pins
+from records.loops import ADC_CODES, Analogue, Loop, Pins
 from records.text import checks
+from sim.bind import BoundPlant
+
+# A plant file states a sensor's step, and its scale states it again: as many digits as one would print.
+_STEP_AGREES = 1e-4
 
 
 def with_pins(
-    loops: tuple[Loop, ...], section: Mapping[str, Any], where: str, board: Board = STM32G071
+    bound: BoundPlant, loops: tuple[Loop, ...], section: Mapping[str, Any], where: str, board: Board = STM32G071
 ) -> tuple[Loop, ...]:
     """The loops with the pins that [board] names, as they are where it names none; raises BadInput for what `board` does not have."""
     if not section:
         return loops
     columns = [name for loop in loops for name in (loop.output, loop.input)]
     checks.keys(section, where, columns)
-    pinned = tuple(replace(loop, pins=_pins_of(loop, section, where, board)) for loop in loops)
+    pinned = tuple(replace(loop, pins=_pins_of(bound, loop, section, where, board)) for loop in loops)
     used = [name for loop in pinned if loop.pins is not None for name in loop.pins.names]
     twice = sorted({name for name in used if used.count(name) > 1})
     if twice:
@@ -33,41 +43,84 @@ def with_pins(
     return pinned
 
 
-def _pins_of(loop: Loop, section: Mapping[str, Any], where: str, board: Board) -> Pins:
-    measured = checks.table(section[loop.output], f"{where}.{loop.output}")
-    driven = checks.table(section[loop.input], f"{where}.{loop.input}")
-    _demand_encoder(measured, f"{where}.{loop.output}")
-    _demand_own_full_scale(driven, f"{where}.{loop.input}")
-    checks.keys(driven, f"{where}.{loop.input}", ("pwm",), ("direction",))
-    names = {name: checks.text(value, f"{where}.{loop.input}.{name}") for name, value in driven.items()}
-    first, second = measured["encoder"]
-    pins = Pins((first, second), **names)
-    if board.encoder_of(pins) is None:
-        known = ", or ".join(f'["{one.a}", "{one.b}"]' for one in board.encoders)
-        raise _unknown("encoder", f"{where}.{loop.output}.encoder", " and ".join(pins.encoder), known, board)
+def demand_in_reach(loop: Loop, low_rad: float, high_rad: float, what: str, where: str) -> None:
+    """Raise BadInput for a range with angles at which the loop's analogue sensor, where it has one, ends or stands on a rail."""
+    if loop.analogue is None:
+        return
+    step_rad = loop.analogue.step_rad
+    least_rad, most_rad = (rail * step_rad for rail in loop.analogue.rails_counts)
+    if low_rad <= least_rad or high_rad >= most_rad:
+        expected = (
+            f"angles between {least_rad:.6g} and {most_rad:.6g} rad, the ends of the sensor on {loop.analogue.pin}"
+        )
+        remedy = "narrow the range, or give the sensor more of a scale: on its ends it reads as a torn wire does"
+        raise BadInput(what, where, f"{low_rad:g} .. {high_rad:g} rad", expected, remedy)
+
+
+def _pins_of(bound: BoundPlant, loop: Loop, section: Mapping[str, Any], where: str, board: Board) -> Pins:
+    sensor_where, driver_where = f"{where}.{loop.output}", f"{where}.{loop.input}"
+    measured = checks.table(section[loop.output], sensor_where)
+    driven = checks.table(section[loop.input], driver_where)
+    checks.keys(driven, driver_where, ("pwm",), ("direction", "full_scale_V"))
+    names = {
+        name: checks.text(driven[name], f"{driver_where}.{name}") for name in ("pwm", "direction") if name in driven
+    }
+    full_scale_V = _full_scale_V(bound, loop, driven, driver_where)
+    pins = Pins(None, names["pwm"], names.get("direction"), None, full_scale_V)
     if board.motor_of(pins) is None:
         known = ", or ".join(f'pwm "{one.pwm}" with direction "{one.direction}" or none' for one in board.motors)
-        got = " and ".join(names.values())
-        raise _unknown("output", f"{where}.{loop.input}", got, known, board)
+        raise _unknown("output", driver_where, " and ".join(names.values()), known, board)
+    if "analogue" in measured:
+        pins = replace(pins, analogue=_analogue(measured, sensor_where))
+        if board.channel_of(pins) is None:
+            known = ", ".join(str(channel.pin) for channel in board.converter.channels)
+            raise _unknown("analogue input", f"{sensor_where}.analogue", str(measured["analogue"]), known, board)
+        _demand_stated_step(bound, replace(loop, pins=pins), sensor_where)
+        return pins
+    pins = replace(pins, encoder=_encoder(measured, sensor_where))
+    if board.encoder_of(pins) is None:
+        known = ", or ".join(f'["{one.a}", "{one.b}"]' for one in board.encoders)
+        raise _unknown("encoder", f"{sensor_where}.encoder", " and ".join(pins.encoder or ()), known, board)
     return pins
 
 
-def _demand_encoder(measured: Mapping[str, Any], where: str) -> None:
-    if "analogue" in measured:
-        remedy = "give an encoder, or leave [board] out: with the host in the loop angles come over the line"
-        raise BadInput("sensor", where, "an analogue input", "an encoder, which is what the firmware reads", remedy)
+def _encoder(measured: Mapping[str, Any], where: str) -> tuple[str, str]:
     checks.keys(measured, where, ("encoder",))
     names = measured["encoder"]
     if not isinstance(names, list) or len(names) != 2 or not all(isinstance(name, str) for name in names):
         got = repr(names)[:40]
         raise BadInput("encoder", where, got, "the names of two pins", 'write { encoder = ["PA0", "PA1"] }')
+    return names[0], names[1]
 
 
-def _demand_own_full_scale(driven: Mapping[str, Any], where: str) -> None:
+def _analogue(measured: Mapping[str, Any], where: str) -> Analogue:
+    checks.keys(measured, where, ("analogue", "zero_scale_rad", "full_scale_rad"))
+    scales = [checks.number(measured[name], f"{where}.{name}") for name in ("zero_scale_rad", "full_scale_rad")]
+    if scales[0] == scales[1]:
+        expected = "two angles: at 0 V, and at the converter's reference"
+        raise BadInput("scale", where, f"{scales[0]:g} rad at both ends", expected, "write what the sensor measures")
+    return Analogue(checks.text(measured["analogue"], f"{where}.analogue"), *scales)
+
+
+def _demand_stated_step(bound: BoundPlant, loop: Loop, where: str) -> None:
+    """The flight is simulated with the step that the file states for the sensor: it has to be a code of this scale."""
+    assert loop.analogue is not None
+    stated_rad, step_rad = bound.plant.sensors[loop.output], loop.analogue.step_rad
+    if not math.isclose(stated_rad, step_rad, rel_tol=_STEP_AGREES):
+        expected = f"{step_rad:.7g} rad, the scale's {ADC_CODES}th part"
+        remedy = f"write resolution_rad = {step_rad:.7g} in [sensors.{loop.output}], or mend the scale"
+        raise BadInput("step of the sensor", where, f"resolution_rad = {stated_rad:g}", expected, remedy)
+
+
+def _full_scale_V(bound: BoundPlant, loop: Loop, driven: Mapping[str, Any], where: str) -> float:
     if "full_scale_V" in driven:
-        got = f"{checks.number(driven['full_scale_V'], f'{where}.full_scale_V'):g} V"
-        remedy = "let the equations scale the input to what the driver gives, or leave [board] out"
-        raise BadInput("full scale", where, got, "the PWM's own, which docs/new-plant.md names", remedy)
+        return checks.positive(driven["full_scale_V"], f"{where}.full_scale_V")
+    symbol = next(symbol for symbol in bound.model.inputs if symbol.name == loop.input)
+    largest_V = max(map(abs, bound.limits(symbol)))
+    if not math.isfinite(largest_V) or largest_V == 0.0:
+        expected = "full_scale_V, as the plant's input has no limits"
+        raise BadInput("full scale", where, "nothing", expected, "write the voltage at full duty: full_scale_V = 12.0")
+    return largest_V
 
 
 def _unknown(what: str, where: str, got: str, known: str, board: Board) -> BadInput:

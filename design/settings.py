@@ -38,6 +38,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from design.pins import demand_in_reach
 from design.pole_placement import FREE_DEGREES
 from design.schedule import Degrees
 from design.structure import loops_of, stops
@@ -321,6 +322,7 @@ def _axis(
         for end, key in enumerate(("reference_min_rad", "reference_max_rad"))
     )
     _check_range(f"{where}: reference_min_rad, reference_max_rad", low, high, stops_rad, "reference range")
+    demand_in_reach(loop, low, high, "reference range", f"{where}: reference_min_rad, reference_max_rad")
     return AxisSettings(
         axis=axis,
         poles_rad_s=read_poles(_entry(section, "poles_rad_s", defaults), f"{where}.poles_rad_s"),

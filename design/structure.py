@@ -35,7 +35,7 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
     for loop in loops:
         _demand_column("output", loop.output, [str(name) for name in bound.model.outputs], f"{where}.{loop.axis}")
         _demand_column("input", loop.input, [str(name) for name in bound.model.inputs], f"{where}.{loop.axis}")
-    return with_pins(loops, board, board_where)
+    return with_pins(bound, loops, board, board_where)
 
 
 def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, Any]:

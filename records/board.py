@@ -75,6 +75,22 @@ class Motor:
 
 
 @dataclass(frozen=True)
+class Channel:
+    """An input of the converter, by the pin on which it is."""
+
+    pin: Pin
+    number: int
+
+
+@dataclass(frozen=True)
+class Converter:
+    """The analogue-digital converter of this number, and the inputs of it that a board offers."""
+
+    number: int
+    channels: tuple[Channel, ...]
+
+
+@dataclass(frozen=True)
 class SerialLine:
     """The line to the host, and the number of its interrupt."""
 
@@ -121,6 +137,7 @@ class Board:
     azimuth_encoder: Encoder
     main_motor: Motor
     tail_motor: Motor
+    converter: Converter
     line: SerialLine
     tick: Tick
     boot_loader_id: int
@@ -137,6 +154,11 @@ class Board:
         """Its motors' drivers."""
         return self.main_motor, self.tail_motor
 
+    def channel_of(self, pins: Pins) -> Channel | None:
+        """The converter's input on these pins, where there is one."""
+        name = None if pins.analogue is None else pins.analogue.pin
+        return next((one for one in self.converter.channels if str(one.pin) == name), None)
+
     def encoder_of(self, pins: Pins) -> Encoder | None:
         """The encoder on these pins, where there is one."""
         return next((one for one in self.encoders if (str(one.a), str(one.b)) == pins.encoder), None)
@@ -152,6 +174,11 @@ class Board:
     def interrupts(self) -> dict[str, int]:
         """Numbers of the interrupts in use, by peripheral."""
         return {f"TIM{self.tick.timer}": self.tick.interrupt, f"USART{self.line.usart}": self.line.interrupt}
+
+
+def _channels(**numbers: int) -> tuple[Channel, ...]:
+    """Inputs of a converter by the names of their pins."""
+    return tuple(Channel(Pin(name[1], int(name[2:])), number) for name, number in numbers.items())
 
 
 # RM0444 by section: memories 2.2.2, flash pages 3.3.1, wait states 3.3.4, writing by 64 bits 3.3.8, clocks 5.2, vectors 12.3, device id
@@ -176,6 +203,7 @@ STM32G071 = Board(
     azimuth_encoder=Encoder(timer=3, bits=16, a=Pin("A", 6, 1), b=Pin("A", 7, 1)),
     main_motor=Motor(timer=1, channel=1, pwm=Pin("A", 8, 2), direction=Pin("B", 0)),
     tail_motor=Motor(timer=1, channel=2, pwm=Pin("A", 9, 2), direction=Pin("B", 1)),
+    converter=Converter(1, _channels(PA0=0, PA1=1, PA4=4, PA5=5, PA6=6, PA7=7)),
     line=SerialLine(usart=2, interrupt=28, transmit=Pin("A", 2, 1), receive=Pin("A", 3, 1)),
     tick=Tick(timer=6, interrupt=17),
     boot_loader_id=0x460,
@@ -205,6 +233,7 @@ STM32G431 = Board(
     azimuth_encoder=Encoder(timer=3, bits=16, a=Pin("A", 6, 2), b=Pin("A", 7, 2)),
     main_motor=Motor(timer=1, channel=1, pwm=Pin("A", 8, 6), direction=Pin("B", 0)),
     tail_motor=Motor(timer=1, channel=2, pwm=Pin("A", 9, 6), direction=Pin("B", 1)),
+    converter=Converter(2, _channels(PA0=1, PA1=2, PA4=17, PA5=13, PA6=3, PA7=4)),
     line=SerialLine(usart=2, interrupt=38, transmit=Pin("A", 2, 7), receive=Pin("A", 3, 7)),
     tick=Tick(timer=6, interrupt=54),
     boot_loader_id=0x468,

@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from records.errors import BadInput
-from records.loops import LOOPS, MOST_LOOPS, Loop, Pins
+from records.loops import LOOPS, MOST_LOOPS, Analogue, Loop, Pins
 from records.text import checks
 from records.text.reading import read_json
 
@@ -293,13 +293,32 @@ def _loop(entry: Any, where: str) -> Loop:
 
 def _pins(entry: Any, where: str) -> Pins:
     section = checks.table(entry, where)
-    checks.keys(section, where, ("encoder", "pwm"), ("direction",))
-    encoder = section["encoder"]
-    if not isinstance(encoder, list | tuple) or len(encoder) != 2:
-        raise BadInput("encoder", where, repr(encoder)[:40], "the names of two pins", 'write encoder = ["PA0", "PA1"]')
-    first, second = (checks.text(name, f"{where}.encoder") for name in encoder)
+    sensor = "analogue" if "analogue" in section else "encoder"
+    checks.keys(section, where, (sensor, "pwm", "full_scale_V"), ("direction",))
     names = {name: checks.text(section[name], f"{where}.{name}") for name in ("pwm", "direction") if name in section}
-    return Pins((first, second), **names)
+    full_scale_V = checks.positive(section["full_scale_V"], f"{where}.full_scale_V")
+    if sensor == "analogue":
+        analogue = _analogue(section[sensor], f"{where}.{sensor}")
+        return Pins(None, names["pwm"], names.get("direction"), analogue, full_scale_V)
+    encoder = _encoder(section[sensor], f"{where}.{sensor}")
+    return Pins(encoder, names["pwm"], names.get("direction"), None, full_scale_V)
+
+
+def _encoder(entry: Any, where: str) -> tuple[str, str]:
+    if not isinstance(entry, list | tuple) or len(entry) != 2:
+        raise BadInput("encoder", where, repr(entry)[:40], "the names of two pins", 'write encoder = ["PA0", "PA1"]')
+    first, second = (checks.text(name, where) for name in entry)
+    return first, second
+
+
+def _analogue(entry: Any, where: str) -> Analogue:
+    section = checks.table(entry, where)
+    checks.keys(section, where, tuple(Analogue.__dataclass_fields__))
+    scales = ("zero_scale_rad", "full_scale_rad")
+    return Analogue(
+        checks.text(section["pin"], f"{where}.pin"),
+        *(checks.number(section[name], f"{where}.{name}") for name in scales),
+    )
 
 
 def _schedule(content: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -> Schedule | None:

@@ -1,5 +1,5 @@
 /*
- * What a chip gives to the main loop: two quadrature encoders, two PWM outputs with direction, one serial line.
+ * What a chip gives to the main loop: two quadrature encoders, analogue inputs, two PWM outputs with direction, one serial line.
  * A file for each part below is in the family's folder, or in the chip's where chips differ: its clock, its registers in chip.h,
  * its wiring in wiring.h, its memories in link.ld.
  */
@@ -27,7 +27,13 @@ void pin_alternate(pin_port port, uint32_t pin, uint32_t function, bool pull_up)
 void pin_output(pin_port port, uint32_t pin);
 void pin_write(pin_port port, uint32_t pin, bool high);
 
-/* encoders.c */
+/* analogue.c, where a loop has an analogue sensor */
+#define ANALOGUE_SILENT 4096u /* beyond the 12 bits of a code */
+void pin_analogue(uint32_t pin); /* on port A */
+void analogue_start(void);
+uint32_t analogue_read(uint32_t channel); /* the code now, 0 to 4095; ANALOGUE_SILENT where the converter does not end in time */
+
+/* encoders.c: encoders, and what else measures an angle */
 void encoders_start(encoder_counts *self);
 encoder_counts encoders_read(encoder_counts *self); /* within every 32 767 counts of azimuth */
 

@@ -98,6 +98,7 @@ static path_demand restart_law(path_state *self, const uint8_t *payload)
 #define MOVE_ORIGIN(angle, voltage, motor, VOLTAGE)                                                             \
     self->offset.angle##_counts = (int32_t)((uint32_t)self->offset.angle##_counts + (uint32_t)now.angle##_counts \
                                             - (uint32_t)self->measured.angle##_counts);
+#define STAYS(angle, least, most) .angle##_counts = self->measured.angle##_counts, /* it knows its place by itself */
 #define NOW(angle, voltage, motor, VOLTAGE) .angle##_counts = now.angle##_counts,
 static path_demand preset(path_state *self, const uint8_t *payload)
 {
@@ -106,8 +107,8 @@ static path_demand preset(path_state *self, const uint8_t *payload)
         return reply_result(self, PROTOCOL_TYPE_PRESET, PROTOCOL_REASON_ARMED);
     }
     protocol_preset_unpack(&now, payload);
-    PROTOCOL_LOOPS(MOVE_ORIGIN)
-    self->measured = (encoder_counts){PROTOCOL_LOOPS(NOW)};
+    PROTOCOL_ENCODER_LOOPS(MOVE_ORIGIN)
+    self->measured = (encoder_counts){PROTOCOL_ENCODER_LOOPS(NOW) PROTOCOL_ANALOGUE_LOOPS(STAYS)};
     supervisor_position_known(&self->supervisor);
     return reply_result(self, PROTOCOL_TYPE_PRESET, PROTOCOL_REASON_DONE);
 }

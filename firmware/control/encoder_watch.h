@@ -1,7 +1,8 @@
 /*
- * Are the encoders believable? Their counts alone show two faults: a jump farther than the plant can turn in a sample,
- * and an axis that does not move by one count although its motor is at full drive. An encoder that stands still while
- * its motor runs below full drive looks like a plant at rest: no count can tell them apart.
+ * Are the sensors believable? The counts of an encoder alone show two faults: a jump farther than the plant can turn in a
+ * sample, and an axis that does not move by one count although its motor is at full drive. An encoder that stands still
+ * while its motor runs below full drive looks like a plant at rest: no count can tell them apart. An analogue sensor whose
+ * wire is torn or short reads its first or last code, at which nothing that it measures is.
  */
 #ifndef ENCODER_WATCH_H
 #define ENCODER_WATCH_H

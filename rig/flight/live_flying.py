@@ -3,7 +3,6 @@
 import math
 from typing import Protocol
 
-from codegen.twin import FULL_SCALE_V
 from records.errors import BadInput
 from records.logs.live import LiveRow
 from records.loops import LOOPS, Loop, Pins
@@ -40,7 +39,7 @@ class RealRig:
 
 
 class EmulatedRig:
-    """A simulated plant on the pins of an emulated board: the PWM drives it, it turns the encoders."""
+    """A simulated plant on the pins of an emulated board: the PWM drives it, it turns encoders and analogue sensors."""
 
     real = False
 
@@ -55,15 +54,22 @@ class EmulatedRig:
         self._port, self._plant, self._wires, self._resolution_rad = port, plant, wires, resolution_rad
         self._pins = tuple(loop.pins for loop in loops if loop.pins is not None)
         self._origin = self._counts()
+        self._turn_sensors()  # an analogue one knows its place before anything moves
 
     def move(self, period_s: float) -> None:
         """Advance the plant with the voltages that the pins give now."""
         voltages_V = [self._voltage(pins) for pins in self._pins]
         self._plant.advance(self._wires.command_V(voltages_V), self._plant.t_s + period_s)
+        self._turn_sensors()
+
+    def _turn_sensors(self) -> None:
+        chip = self._board.config.chip
         for pins, now, first in zip(self._pins, self._counts(), self._origin, strict=True):
-            encoder = self._board.config.chip.encoder_of(pins)
-            assert encoder is not None
-            self._board.set_encoder(encoder.timer, now - first)
+            encoder, channel = chip.encoder_of(pins), chip.channel_of(pins)
+            if encoder is not None:
+                self._board.set_encoder(encoder.timer, now - first)
+            if channel is not None and pins.analogue is not None:
+                self._board.set_analogue(channel.number, pins.analogue.code(now))
 
     @property
     def _board(self) -> EmulatedBoard:
@@ -82,7 +88,7 @@ class EmulatedRig:
             return 0.0
         turned = pins.direction is not None and self._board.gpio(motor.direction.port).drives(motor.direction.number)
         ticks = (pwm.main_ticks, pwm.tail_ticks)[motor.channel - 1]
-        return (-ticks if turned else ticks) * FULL_SCALE_V / pwm.period_ticks
+        return (-ticks if turned else ticks) * pins.full_scale_V / pwm.period_ticks
 
 
 def ticks_of_telemetry(period_s: float) -> int:

@@ -205,7 +205,7 @@ def demand_pins(loops: tuple[Loop, ...], where: str) -> None:
     if not has_pins(loops):
         names = ", ".join(loop.axis for loop in loops)
         expected = (
-            "an encoder and an output on the board for every loop, as section [board] of a plant file names their pins"
+            "a sensor and an output on the board for every loop, as section [board] of a plant file names their pins"
         )
         remedy = "fly with the host in the loop: the host sends angles, the board answers voltages"
         raise BadInput("flight on the board's own encoders", where, f"the loops {names}", expected, remedy)

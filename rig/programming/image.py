@@ -51,7 +51,7 @@ def build_firmware(
     texts = {**generated, **protocol_source(protocol_of(loops)), **pins_source(loops, board)}
     sources: list[Source] = [
         *control_sources(),
-        *board_sources(board, has_pins(loops)),
+        *board_sources(board, loops),
         *(CText(name, text) for name, text in sorted(texts.items())),
     ]
     folders = [FIRMWARE_DIR / "control", *board_folders(board)]
@@ -90,10 +90,12 @@ def control_sources() -> list[Path]:
     return sorted((FIRMWARE_DIR / "control").glob("*.c"))
 
 
-def board_sources(board: Board, pins: bool = True) -> list[Path]:
-    """`main` and the layer of the chip below it, in a fixed order; without `pins` nothing hangs on the chip but the line."""
+def board_sources(board: Board, loops: tuple[Loop, ...] = LOOPS) -> list[Path]:
+    """`main` and the layer of the chip below it, in a fixed order; where `loops` have no pins nothing hangs on the chip but the line."""
     files = {path.name: path for folder in board_folders(board) for path in folder.glob("*.c")}
-    if not pins:
+    if not any(loop.analogue for loop in loops):
+        del files["analogue.c"]
+    if not has_pins(loops):
         files |= {path.name: path for path in (FIRMWARE_DIR / "board" / "no_pins").glob("*.c")}
     return [files[name] for name in sorted(files)]
 

@@ -4,7 +4,7 @@
 #include "wiring.h"
 
 /* Quadrature on both inputs, four counts a line, glitches below 8 clocks ignored. The period of a counter is ARR + 1. */
-static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
+__attribute__((unused)) static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
 {
     timer->CCMR1 =
         TIM_CCMR1_CC1S_TI1 | TIM_CCMR1_CC2S_TI2 | TIM_CCMR1_IC1F_8_SAMPLES | TIM_CCMR1_IC2F_8_SAMPLES;
@@ -23,6 +23,8 @@ static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
 #define START_1(angle, voltage, motor, VOLTAGE) encoder_timer_start(TIM2, UINT32_MAX);
 #define START_2(angle, voltage, motor, VOLTAGE) encoder_timer_start(TIM3, UINT16_MAX);
 
+#define PINS_OF_ANALOGUE(angle, pin, channel, sign, origin) pin_analogue(pin);
+
 void encoders_start(encoder_counts *self)
 {
     clock_to_encoders();
@@ -30,6 +32,10 @@ void encoders_start(encoder_counts *self)
     PINS_ENCODER_2(PINS_OF_2)
     PINS_ENCODER_1(START_1)
     PINS_ENCODER_2(START_2)
+    PINS_ANALOGUE(PINS_OF_ANALOGUE)
+#if PINS_HAS_ANALOGUE
+    analogue_start();
+#endif
     *self = (encoder_counts){0};
 }
 
@@ -43,8 +49,12 @@ void encoders_start(encoder_counts *self)
     const int16_t moved = (int16_t)(uint16_t)(angle - (uint16_t)self->angle##_counts);               \
     self->angle##_counts = (int32_t)((uint32_t)self->angle##_counts + (uint32_t)moved);
 
+/* A converter that is silent reads beyond its last code, which the watch over the sensors does not believe. */
+#define READ_ANALOGUE(angle, pin, channel, sign, origin) self->angle##_counts = (sign) * (int32_t)analogue_read(channel) + (origin);
+
 encoder_counts encoders_read(encoder_counts *self)
 {
+    PINS_ANALOGUE(READ_ANALOGUE)
     PINS_ENCODER_2(READ_2)
     PINS_ENCODER_1(READ_1)
     return *self;

@@ -35,6 +35,7 @@ _Static_assert(offsetof(gpio_registers, AFR) == 0x20, "GPIO layout");
 
 #define GPIO_MODE_OUTPUT 1u
 #define GPIO_MODE_ALTERNATE 2u
+#define GPIO_MODE_ANALOGUE 3u
 #define GPIO_PULL_UP 1u
 
 /* Timers: TIM1 RM0444 21.4, TIM2/TIM3 22.4, TIM6 23.4; one layout, of which a basic timer has a part. */
@@ -113,6 +114,34 @@ _Static_assert(offsetof(usart_registers, TDR) == 0x28, "USART layout");
 #define USART_ICR_FECF BIT(1)
 #define USART_ICR_NECF BIT(2)
 #define USART_ICR_ORECF BIT(3)
+
+/* Analogue-digital converter, RM0444 15.12; RM0440 21.7 has registers for channels of its own. */
+typedef struct {
+    volatile uint32_t ISR;    /* 0x00, 15.12.1 */
+    volatile uint32_t IER;    /* 0x04 */
+    volatile uint32_t CR;     /* 0x08, 15.12.3 */
+    volatile uint32_t CFGR;   /* 0x0c, CFGR1 in RM0444 */
+    volatile uint32_t CFGR2;  /* 0x10, 15.12.5 */
+    volatile uint32_t SMPR1;  /* 0x14, 15.12.6, SMPR in RM0444 */
+    volatile uint32_t SMPR2;  /* 0x18, RM0440 alone */
+    uint32_t unused_1c[3];
+    volatile uint32_t CHSELR; /* 0x28, 15.12.9, RM0444 alone */
+    uint32_t unused_2c;
+    volatile uint32_t SQR1;   /* 0x30, RM0440 alone */
+    uint32_t unused_34[3];
+    volatile uint32_t DR;     /* 0x40, 15.12.13 */
+} adc_registers;
+_Static_assert(offsetof(adc_registers, CHSELR) == 0x28, "ADC layout");
+_Static_assert(offsetof(adc_registers, SQR1) == 0x30, "ADC layout");
+_Static_assert(offsetof(adc_registers, DR) == 0x40, "ADC layout");
+
+#define ADC_ISR_ADRDY BIT(0)
+#define ADC_ISR_EOC BIT(2)
+#define ADC_ISR_OVR BIT(4)
+#define ADC_CR_ADEN BIT(0)
+#define ADC_CR_ADSTART BIT(2)
+#define ADC_CR_ADVREGEN BIT(28)
+#define ADC_CR_ADCAL BIT(31)
 
 /* Independent watchdog, RM0444 28.4. */
 typedef struct {

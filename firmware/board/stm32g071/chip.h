@@ -52,6 +52,7 @@ _Static_assert(offsetof(rcc_registers, CSR) == 0x60, "RCC layout");
 #define RCC_APBENR1_TIM6 BIT(4)
 #define RCC_APBENR1_USART2 BIT(17)
 #define RCC_APBENR2_TIM1 BIT(11)
+#define RCC_APBENR2_ADC BIT(20)
 
 /* Flash access control, RM0444 3.7.1. */
 #define FLASH_ACR (*(volatile uint32_t *)0x40022000u)
@@ -63,6 +64,13 @@ _Static_assert(offsetof(rcc_registers, CSR) == 0x60, "RCC layout");
 /* Ports, RM0444 2.2. */
 #define GPIOA ((gpio_registers *)0x50000000u)
 #define GPIOB ((gpio_registers *)0x50000400u)
+
+/* The converter, RM0444 15.12: at a quarter of the bus' clock, 16 MHz; 39.5 of its clocks to take the voltage, 12.5 to convert it. */
+#define ADC ((adc_registers *)0x40012400u)
+#define ADC_ISR_CCRDY BIT(13)
+#define ADC_CFGR2_CKMODE_4 (2u << 30)
+#define ADC_SMPR_39_CLOCKS 5u
+#define ANALOGUE_CONVERSION_CLOCKS 208u
 
 #define PRIORITY_BITS 2u /* PM0223 4.2.7 */
 
@@ -85,6 +93,28 @@ static inline void clock_to_encoders(void)
 static inline void clock_to_pwm(void)
 {
     RCC->APBENR2 |= RCC_APBENR2_TIM1;
+}
+
+static inline void clock_to_analogue(void)
+{
+    RCC->APBENR2 |= RCC_APBENR2_ADC;
+}
+
+static inline void analogue_set_up(void)
+{
+    ADC->CFGR2 = ADC_CFGR2_CKMODE_4;
+    ADC->SMPR1 = ADC_SMPR_39_CLOCKS;
+}
+
+/* Select the channel; the flag that tells when it is, 0 where it was before. */
+static inline uint32_t analogue_select(uint32_t channel)
+{
+    if (ADC->CHSELR == BIT(channel)) {
+        return 0;
+    }
+    ADC->ISR = ADC_ISR_CCRDY;
+    ADC->CHSELR = BIT(channel);
+    return ADC_ISR_CCRDY;
 }
 
 static inline void clock_to_tick(void)

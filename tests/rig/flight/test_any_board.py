@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,17 +12,19 @@ import pytest
 from codegen.law import demand_drivable, generate_law
 from codegen.law_equations import state_words
 from design.settings import read_settings
+from records.board import STM32G071
 from records.errors import BadInput
 from records.loops import LOOPS, Pins
 from records.protocol import PROTOCOL, protocol_of
 from records.table import ControllerTable, load_table, table_text
 from rig.emulator.board import EmulatedBoard
+from rig.emulator.stops import StopKind
 from rig.flight.controller import BoardController
 from rig.flight.live import time_of
 from rig.flight.live_flying import EmulatedRig, FlyingFlight
 from rig.flight.target_law import TargetLaw
 from rig.link.client import BoardClient
-from rig.link.numbers import Float32Numbers, numbers_of
+from rig.link.numbers import numbers_of
 from rig.link.port import open_port
 from rig.programming.image import build_firmware
 from sim.bind import bind
@@ -35,9 +37,11 @@ from tests.other_plants import PLANTS, WISHES, plant_file
 from tests.soak import SOAK, sampled
 from twinlaw.workflows.chain.designing import design_plant
 from twinlaw.workflows.chain.flying import flight_of
+from twinlaw.workflows.chain.verifying import sensor_cycles
 from twinlaw.workflows.reading import load_bound
 from verification.equality import compare
 from verification.host_law import host_law
+from verification.static_bound.bound import static_bound
 
 STEPS = 100_000 if SOAK else 2_000
 SAMPLES = 400  # of a flight, from just before its references first change; all of them in `make soak`
@@ -111,33 +115,123 @@ def test_a_board_without_pins_for_its_loops_says_so_and_does_not_fly_by_itself(t
         assert client.health().state == "DISARMED"
 
 
-def test_an_arm_flies_on_the_board_s_own_encoder_and_output(tmp_path: Path) -> None:
-    """Truth: the compiled C on the angles that the encoder tells, bit by bit; the arm rests within 0.1 deg of its reference.
+@dataclass(frozen=True)
+class Own:
+    """A flight on the board's own sensor and output: what hangs where, the reference held, and how near it ends."""
 
-    It hangs on the board's second encoder and second output, a driver that turns one way only.
-    """
-    aeroshield = load_bound(PLANTS / "aeroshield.toml")
-    pins = {"theta_rad": {"encoder": ["PA6", "PA7"]}, "u_V": {"pwm": "PA9"}}
-    bound = bind(replace(aeroshield.plant, board=pins))
-    table = design_plant(bound).table
+    plant: str
+    board: dict[str, dict[str, Any]]
+    reference_rad: float
+    within_rad: float
+    arithmetic: str = "float32"
+
+
+# The board's second encoder and second output, a driver that turns one way only; a potentiometer that rises or falls with the angle.
+POTENTIOMETER = {
+    "theta_rad": {"analogue": "PA4", "zero_scale_rad": -2.048, "full_scale_rad": 2.048},
+    "u_V": {"pwm": "PA8", "direction": "PB0"},
+}
+TURNED = {
+    "theta_rad": {"analogue": "PA6", "zero_scale_rad": 1.5, "full_scale_rad": -2.596},
+    "u_V": POTENTIOMETER["u_V"],
+}
+# As many codes a radian as the AeroShield's own sensor, but an end too early.
+SHORT = {"analogue": "PA4", "zero_scale_rad": 0.7 - 1.5 * np.pi, "full_scale_rad": 0.7}
+OWN = [
+    Own("aeroshield", {"theta_rad": {"encoder": ["PA6", "PA7"]}, "u_V": {"pwm": "PA9"}}, 0.4, np.radians(0.1)),
+    Own("inverted_arm", POTENTIOMETER, 0.15, 0.004),
+    Own("inverted_arm", TURNED, -0.15, 0.004, "fixed"),
+]
+
+
+@contextmanager
+def own_flight(own: Own, folder: Path) -> Iterator[tuple[ControllerTable, BoardClient, FlyingFlight, EmulatedBoard]]:
+    """The emulated board with the plant on its pins, its place told."""
+    bound = load_bound(plant_file(own.plant, folder))
+    bound = bind(replace(bound.plant, board=own.board))
+    table = design_plant(bound, own.arithmetic).table
     wires, steps = wiring(bound, table.loops), (table.axes[0].resolution_rad,)
-    build_firmware(generate_law(table), tmp_path, loops=table.loops)
-    url = f"emulated://{tmp_path / 'firmware.elf'}"
+    demand_drivable(table)
+    build_firmware(generate_law(table, own.arithmetic), folder, loops=table.loops)
+    url = f"emulated://{folder / 'firmware.elf'}"
     port, protocol = open_port(url, timeout_s=0.25), protocol_of(table.loops)
-    with BoardClient.over(port, url, table_digest=table.digest, numbers=Float32Numbers(), protocol=protocol) as client:
+    numbers = numbers_of(table, own.arithmetic)
+    with BoardClient.over(port, url, table_digest=table.digest, numbers=numbers, protocol=protocol) as client:
         rig = EmulatedRig(port, SteppedPlant(bound, at_rest(bound)), wires, steps, table.loops)
         flight = FlyingFlight(client, rig, wires, time_of(port), table.sample_period_s)
         flight.preset(0)
+        yield table, client, flight, port.board
+
+
+@pytest.mark.parametrize("own", OWN, ids=["encoder", "potentiometer", "turned, fixed"])
+def test_a_plant_flies_on_the_board_s_own_sensor_and_output(own: Own, tmp_path: Path) -> None:
+    """Truth: the compiled C on the angles that the sensor tells, bit by bit; the plant rests where it was told to."""
+    with own_flight(own, tmp_path) as (table, client, flight, _):
+        flight.sample((0.0,))  # the sensor is read once a tick: before the first, it is where it was without a plant
         begun = flight.arm()  # takes the first telemetry: a step that holds the place
-        reference = (steps[0] * round(0.4 / steps[0]),)
-        rows = [row for row in (flight.sample(reference) for _ in range(500)) if row is not None]
+        step_rad = table.axes[0].resolution_rad
+        reference = (step_rad * round(own.reference_rad / step_rad),)
+        rows = [row for row in (flight.sample(reference) for _ in range(1000)) if row is not None]
+        assert len(rows) == 1000
         assert client.counters()["encoder_faults"] == 0
-    host = host_law(table)
+    host = host_law(table, own.arithmetic)
     host.reset(*begun)
     host.step(*begun, *begun)
     assert [host.step(*row.reference, *row.y) for row in rows] == [row.u for row in rows]
-    assert abs(rows[-1].y[0] - reference[0]) < np.radians(0.1)
-    assert rows[-1].u[0] > 1.0
+    assert abs(rows[-1].y[0] - reference[0]) < own.within_rad
+    assert np.ptp([row.u[0] for row in rows]) > 0.5
+
+
+@pytest.mark.parametrize("code", [0, 4095, None], ids=["torn", "short", "silent converter"])
+def test_a_sensor_at_its_end_or_without_an_answer_ends_the_flight_by_the_ramp(code: int | None, tmp_path: Path) -> None:
+    """Truth: believed up to the last code but one of either end; then a fault, and FLYING is refused until PRESET."""
+    with own_flight(OWN[1], tmp_path) as (_, client, flight, emulated):
+        flight.sample((0.0,))
+        flight.arm()
+        for near in (1, 4094):
+            emulated.set_analogue(4, near)
+            emulated.run_until_s(emulated.time_s + 0.02)
+            assert client.health().state == "FLYING"
+        if code is None:
+            emulated.silence_converter()
+        else:
+            emulated.set_analogue(4, code)
+        emulated.run_until_s(emulated.time_s + 0.02)
+        health = client.health()
+        assert (health.state, health.counters["encoder_faults"]) == ("RAMPING", 1)
+        emulated.run_until_s(emulated.time_s + 0.1)
+        assert client.health().state == "LOST"
+        assert not emulated.pwm().enabled
+        with pytest.raises(BadInput, match="PRESET"):
+            client.arm("FLYING")
+
+
+def test_preset_does_not_move_a_sensor_that_knows_its_place(tmp_path: Path) -> None:
+    """Truth: code 2048 is the potentiometer's zero, 1048 is -1 rad, whatever the host has declared."""
+    with own_flight(OWN[1], tmp_path) as (_, client, flight, emulated):
+        flight.sample((0.0,))
+        flight.preset(777)
+        emulated.set_analogue(4, 1048)
+        emulated.run_until_s(emulated.time_s + 0.02)
+        assert flight.arm() == (-1.0,)
+        assert client.counters()["encoder_faults"] == 0
+
+
+def test_a_tick_s_wait_for_the_converter_is_bounded_and_taken_off_its_budget(tmp_path: Path) -> None:
+    """Truth: a conversion is 52 clocks at a quarter of the core's, 208 of these; no reading takes longer than what is proved."""
+    bound = load_bound(plant_file("inverted_arm", tmp_path))
+    table = design_plant(bind(replace(bound.plant, board=POTENTIOMETER))).table
+    image = build_firmware(generate_law(table), loops=table.loops)
+    emulated = EmulatedBoard(image.elf)
+    emulated.run_until_s(0.2)
+    proved = static_bound(image.elf, "encoders_read")
+    assert emulated.run_until_symbol("encoders_read", emulated.time_s + 0.02).kind == StopKind.HOST_BREAK
+    begun, back = emulated.cycles, emulated.registers()[14] & ~1
+    while emulated.registers()[15] != back:
+        emulated.run_for(1)
+    assert 208 < emulated.cycles - begun < proved.cycles_bound
+    assert proved.cycles_bound_wait_states / STM32G071.clock_hz < 30e-6  # as docs/new-plant.md says
+    assert sensor_cycles(table, image) == proved.cycles_bound_wait_states
 
 
 WRONG = [
@@ -145,8 +239,13 @@ WRONG = [
         {"theta_rad": {"encoder": ["PA0", "PA7"]}},
         r"board.theta_rad.encoder: encoder: got PA0 and PA7.*STM32G071 board has.*PA6",
     ),
-    ({"theta_rad": {"analogue": "PA4"}}, r"got an analogue input, expected an encoder"),
-    ({"u_V": {"pwm": "PA8", "full_scale_V": 12.0}}, r"full scale: got 12 V, expected the PWM's own"),
+    ({"theta_rad": POTENTIOMETER["theta_rad"] | {"analogue": "PB2"}}, r"analogue input: got PB2.*PA0, PA1, PA4, PA5"),
+    ({"theta_rad": {"analogue": "PA4"}}, r"board.theta_rad: key 'zero_scale_rad'"),
+    ({"theta_rad": POTENTIOMETER["theta_rad"] | {"full_scale_rad": -2.048}}, r"got -2.048 rad at both ends"),
+    ({"theta_rad": POTENTIOMETER["theta_rad"]}, r"step of the sensor: got resolution_rad = 0.0011.*expected 0.001 rad"),
+    ({"theta_rad": SHORT}, r"reference range: got 0.1 .. 0.7 rad.*between -4.0\d+ and 0.69\d+ rad, the ends of .* PA4"),
+    ({"theta_rad": SHORT | {"analogue": "PA8"}}, r"analogue input: got PA8"),
+    ({"u_V": {"pwm": "PA8", "full_scale_V": 0}}, r"board.u_V.full_scale_V: number: got 0"),
     (
         {"u_V": {"pwm": "PA8", "direction": "PB1"}},
         r"board.u_V: output: got PA8 and PB1.*pwm \"PA8\" with direction \"PB0\"",
@@ -164,12 +263,23 @@ def test_pins_that_the_board_does_not_have_are_refused_in_words(wrong: dict[str,
         read_settings(bind(replace(bound.plant, board={**sound, **wrong})))
 
 
-def test_voltages_beyond_a_driver_s_full_scale_are_refused(tmp_path: Path) -> None:
+def test_full_duty_gives_the_input_s_own_limits_or_what_the_board_states(tmp_path: Path) -> None:
     bound = load_bound(plant_file("inverted_arm", tmp_path))  # +-12 V
-    pins = {"theta_rad": {"encoder": ["PA0", "PA1"]}, "u_V": {"pwm": "PA8", "direction": "PB0"}}
-    table = design_plant(bind(replace(bound.plant, board=pins))).table
-    with pytest.raises(BadInput, match=r"got -12 to 12 V.*expected -10 to 10 V"):
+    driver = {"pwm": "PA8", "direction": "PB0"}
+    for stated, scale_V in (({}, 12.0), ({"full_scale_V": 24.0}, 24.0)):
+        board = {**POTENTIOMETER, "u_V": {**driver, **stated}}
+        table = design_plant(bind(replace(bound.plant, board=board))).table
         demand_drivable(table)
+        for arithmetic, twin in TWINS.items():
+            host = host_law(table, arithmetic)
+            exact, volts = twin(table), np.array([12.0, -12.0, 7.3, -0.001, 0.0])
+            ticks = [exact.duty(0, u_V) for u_V in volts]
+            assert np.abs(ticks - 3200 * volts / scale_V).max() <= 0.6  # half a tick, and twice a twentieth
+            words = np.array([[exact.voltage_word(u_V)] for u_V in volts], dtype=np.uint32)
+            assert host.duties(words).ravel().tolist() == ticks
+    narrow = bind(replace(bound.plant, board={**POTENTIOMETER, "u_V": {**driver, "full_scale_V": 6.0}}))
+    with pytest.raises(BadInput, match=r"got -12 to 12 V.*expected -6 to 6 V"):
+        demand_drivable(design_plant(narrow).table)
 
 
 def test_a_table_with_pins_reads_back_as_itself(tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 """A chip that is not emulated: its image's law on unicorn's core, and what its start-up leaves in the registers."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pytest
 import unicorn
@@ -10,9 +10,11 @@ from codegen.law import generate_law
 from codegen.law_equations import state_words
 from records.board import BOARDS, STM32G071, STM32G431, Board
 from records.errors import BadInput, VerificationFailed
+from records.loops import ADC_CODES, Analogue, Pins
 from rig.emulator.board import EmulatedBoard
 from rig.flight.core_law import CoreLaw
 from rig.programming.image import FirmwareImage, build_firmware
+from tests.codegen.test_any_loops import any_table
 from tests.law_tables import ce150_table
 from tests.soak import SOAK, sampled
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
@@ -108,6 +110,68 @@ def test_the_start_of_the_STM32G431_sets_its_registers_and_reaches_the_main_loop
     chip.run_to("board_sleep")
     found = {what: hex(chip.word(address)) for what, (address, _) in STARTED.items()}
     assert found == {what: hex(word) for what, (_, word) in STARTED.items()}
+
+
+# The second converter of the STM32G431 and the registers common to both, RM0440 21.7 and 21.8, with the loop's sensor on PA4, its input 17.
+ADC2, ADC_COMMON = 0x5000_0100, 0x5000_0300
+CONVERTER_STARTED = {
+    "GPIOA_MODER: PA4 is analogue, the line and the PWM are of a peripheral": (GPIOA, 0b10_00_00_00_11_10_10_00_00),
+    "GPIOA_PUPDR: a resistor on PA3 alone": (GPIOA + 0x0C, 1 << 6),
+    "RCC_AHB2ENR: both ports and the converter": (RCC + 0x4C, 1 << 13 | 3),
+    "CCR: a quarter of 128 MHz": (ADC_COMMON + 0x08, 3 << 16),
+    "SMPR1: 92.5 clocks for inputs 0 to 9": (ADC2 + 0x14, int("101" * 10, 2)),
+    "SMPR2: and for 10 to 18": (ADC2 + 0x18, int("101" * 9, 2)),
+    "SQR1: one conversion, of input 17": (ADC2 + 0x30, 17 << 6),
+}
+ADEN, ADSTART, ADVREGEN, ADCAL = 1, 1 << 2, 1 << 28, 1 << 31
+
+
+@dataclass
+class ChipWithConverter(Chip):
+    """The same with a converter that converts to `code` at once, and notes the orders that it got; where it is silent, it never ends."""
+
+    code: int = 0
+    silent: bool = False
+    orders: list[int] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.uc.mem_map(0x5000_0000, 0x1000)
+        self.uc.hook_add(unicorn.UC_HOOK_MEM_WRITE, self._order, begin=ADC2 + 8, end=ADC2 + 11)
+        self.uc.hook_add(unicorn.UC_HOOK_MEM_READ, self._answer, begin=ADC2, end=ADC2 + 11)
+
+    def _order(self, _uc: object, _access: int, _address: int, _size: int, value: int, _data: object) -> None:
+        self.orders.append(value & 0xFFFF_FFFF)
+
+    def _answer(self, *_: object) -> None:
+        last = self.orders[-1]
+        self.write(ADC2 + 8, last & ~ADCAL)
+        ends = last & ADSTART and not self.silent
+        self.write(ADC2, (1 if last & ADEN else 0) | (4 if ends else 0))
+        self.write(ADC2 + 0x40, self.code)
+
+    def read(self, channel: int) -> int:
+        """What analogue_read() gives."""
+        back = self.image.symbols["board_sleep"].address
+        self.uc.reg_write(arm.UC_ARM_REG_R0, channel)
+        self.uc.reg_write(arm.UC_ARM_REG_LR, back | 1)
+        self.uc.emu_start(self.image.symbols["analogue_read"].address | 1, back, count=100_000)
+        return self.uc.reg_read(arm.UC_ARM_REG_R0)
+
+
+def test_the_converter_of_the_STM32G431_starts_reads_and_is_waited_for_no_longer_than_its_bound() -> None:
+    table = any_table((2,), None)
+    pins = Pins(None, "PA8", "PB0", Analogue("PA4", -2.0, 2.0))
+    table = replace(table, loops=(replace(table.loops[0], pins=pins),))
+    chip = ChipWithConverter(build_firmware(generate_law(table), board=STM32G431, loops=table.loops), code=0xFFFF_F123)
+    chip.run_to("board_sleep")
+    assert chip.orders == [0, ADVREGEN, ADVREGEN | ADCAL, ADVREGEN | ADEN]
+    assert chip.read(17) == 0x123
+    assert chip.orders[-1] == ADVREGEN | ADSTART
+    found = {what: hex(chip.word(address)) for what, (address, _) in CONVERTER_STARTED.items()}
+    assert found == {what: hex(word) for what, (_, word) in CONVERTER_STARTED.items()}
+    chip.silent = True
+    assert chip.read(17) == ADC_CODES
 
 
 def test_the_emulated_board_refuses_an_image_of_another_chip() -> None:

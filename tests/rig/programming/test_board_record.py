@@ -82,6 +82,22 @@ def test_each_pin_offers_its_signal_under_its_alternate_function(board: Board) -
 
 
 @every_board
+def test_each_analogue_pin_is_on_its_channel_of_the_converter(board: Board) -> None:
+    pins = {(gpio["port"].upper(), int(gpio["pin"])): gpio["signal"] for gpio in described(board)["gpio"]["gpio"]}
+    for channel in board.converter.channels:
+        offered = {(s["driver"], s.get("instance"), s["name"]) for s in pins[channel.pin.port, channel.pin.number]}
+        assert ("adc", str(board.converter.number), f"in{channel.number}") in offered, channel
+    others = [pin for motor in board.motors for pin in (motor.pwm, motor.direction)]
+    others += [board.line.transmit, board.line.receive]
+    assert not {(pin.port, pin.number) for pin in others} & {
+        (channel.pin.port, channel.pin.number) for channel in board.converter.channels
+    }
+    assert {channel.pin.port for channel in board.converter.channels} == {
+        "A"
+    }  # as firmware/board/stm32/analogue.c sets them
+
+
+@every_board
 def test_the_header_of_the_wiring_says_what_the_record_says(board: Board) -> None:
     elevation, azimuth, main, tail, line = (
         board.elevation_encoder, board.azimuth_encoder, board.main_motor, board.tail_motor, board.line,

@@ -129,8 +129,16 @@ def _cost(table: ControllerTable, arithmetic: str, image: FirmwareImage, target:
         stack_bytes=cost.stack_bytes,
         flash_bytes=image.sizes.flash_bytes,
         ram_bytes=image.sizes.ram_bytes,
-        cycles_budget=round((table.sample_period_s - TICK_RESERVE_S) * STM32G071.clock_hz),
+        cycles_budget=round((table.sample_period_s - TICK_RESERVE_S) * STM32G071.clock_hz)
+        - sensor_cycles(table, image),
     )
+
+
+def sensor_cycles(table: ControllerTable, image: FirmwareImage) -> int:
+    """What a tick waits at most for the converter, which no reserve holds."""
+    if not any(loop.analogue for loop in table.loops):
+        return 0
+    return kept_bound(image.elf, "encoders_read").cycles_bound_wait_states
 
 
 def motion_of(bound: BoundPlant, table: ControllerTable) -> Motion:
