@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TextIO
 
+from records.text.zeros import unsigned_zeros
+
 WIDTH = 78  # of a line that is written over itself
 
 
@@ -111,7 +113,7 @@ def _duration(seconds: float) -> str:
 
 def table(rows: Sequence[Sequence[str]], heading: Sequence[str] = ()) -> str:
     """Columns aligned by width: the first to the left, the others too; the heading is underlined."""
-    lines = [*([heading] if heading else []), *rows]
+    lines = [*([heading] if heading else []), *([unsigned_zeros(cell) for cell in row] for row in rows)]
     widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
     shown = ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
     if heading:

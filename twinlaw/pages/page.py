@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from records.quality import Colour
+from records.text.zeros import unsigned_zeros
 from twinlaw.templates import TEMPLATES
 
 Row = tuple[str, ...]
@@ -52,5 +53,6 @@ def page_text(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["unsigned_zeros"] = unsigned_zeros
     facts = {name: getattr(page, name) for name in Page.__dataclass_fields__}
     return environment.get_template("report.html.j2").render(facts)

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from records.text.zeros import unsigned_zeros
 from toolchain.templates import text_templates
 from twinlaw.pages.compare import tables
 from twinlaw.pages.compare.comparison import Compared, Wanted, spread_of
@@ -143,7 +144,7 @@ def _best_filter(row: Compared, axis: str) -> tuple[float, float] | None:
 
 
 def _markdown(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [heading, ["---"] * len(heading), *rows]
+    lines = [heading, ["---"] * len(heading), *([unsigned_zeros(cell) for cell in row] for row in rows)]
     return (
         "\n".join("| " + " | ".join(line) + " |" for line in lines).replace("| --- ", "|---").replace("--- |", "---|")
     )
