@@ -1,6 +1,6 @@
 """What the controller shall be: the [design] section of a plant file, read, completed with defaults and checked.
 
-[design]                             every key may be left out; the defaults are DEFAULTS below
+[design]                             every key may be left out; the defaults are DEFAULTS below, and for an axis those of plants/MODEL.toml
 sample_period_s = 0.01
 schedule = "psi_rad"                 the measured angle that the coefficients go by; without it none, but the helicopter's elevation
 psi_min_rad = -0.698                 the schedule's range of that angle, within the hard stops
@@ -44,6 +44,7 @@ from design.schedule import Degrees
 from design.structure import loops_of, stops
 from records.errors import BadInput
 from records.loops import LOOPS, Loop
+from records.plant import PLANTS, Plant, load_plant
 from records.table import ORDERS, Schedule
 from records.text import checks
 from sim.bind import BoundPlant
@@ -64,30 +65,7 @@ SAMPLE_PERIODS_S = (0.5e-3, 50e-3)
 # 0.5 ms, float32 overshoots by 2 % at 0.7 ms; at 1 ms it is 0.6 %, and double precision shows nothing at any period.
 ROLL_OFF_FROM_S = 1e-3
 
-# Integral action and a roll-off on both axes, with the poles of plants/ce150.toml, which says how they were found.
-AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
-    "elevation": {
-        "poles_rad_s": (-3.25, -12.6, (-3.4, 4.7), (-3.4, -4.7), (-10.1, 33.8), (-10.1, -33.8)),
-        "roll_off_pole_rad_s": -21.8,
-        "coefficient_degree": None,
-        "free_degree": "integral",
-        "prefilter_time_constant_s": 0.35,
-        "observer_pole": 0.9,
-    },
-    "azimuth": {
-        "poles_rad_s": (-2.7, -4.6, (-3.7, 3.0), (-3.7, -3.0), (-6.3, 23.4), (-6.3, -23.4)),
-        "roll_off_pole_rad_s": -16.8,
-        "coefficient_degree": 0,
-        "free_degree": "integral",
-        "prefilter_time_constant_s": 0.498,
-        "observer_pole": 0.9,
-    },
-}
-
-# Models whose axes the default poles are for.
-KNOWN_POLES = ("ce150", "ce150_seed_literal")
-
-# Wishes for an axis of any other plant, whose poles its file must name.
+# Wishes for an axis that neither its plant file nor that of its model states anything of; the poles are named by one of them.
 PLAIN_AXIS: Mapping[str, Any] = {
     "roll_off_pole_rad_s": 0.0,
     "coefficient_degree": None,
@@ -233,6 +211,15 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
     return settings
 
 
+def _wishes_of_model(plant: Plant, axis: str) -> Mapping[str, Any]:
+    """What the project's own file of the plant's model wishes for an axis of this name; its ranges follow from the plant's stops."""
+    file = PLANTS / f"{plant.model}.toml"
+    if plant.equations is not None or not file.is_file():
+        return {}
+    section = load_plant(file).design.get(axis, {})
+    return {name: value for name, value in section.items() if name in PLAIN_AXIS or name == "poles_rad_s"}
+
+
 def _scheduling(section: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -> Loop | None:
     """The loop whose angle the coefficients go by; the helicopter's is its first."""
     if "schedule" not in section:
@@ -302,14 +289,14 @@ def _axis(
     axis, where = loop.axis, f"{design_where}.{loop.axis}"
     section = checks.table(design.get(axis, {}), where)
     wished = tuple(name for name in AxisSettings.__dataclass_fields__ if name != "axis")
-    is_known = bound.model.name in KNOWN_POLES and axis in AXIS_DEFAULTS
-    checks.keys(section, where, () if is_known else ("poles_rad_s",), (*wished, "output", "input"))
+    of_model = _wishes_of_model(bound.plant, axis)
+    checks.keys(section, where, () if "poles_rad_s" in of_model else ("poles_rad_s",), (*wished, "output", "input"))
     stops_rad = stops(bound, loop)
     if schedule is not None and schedule.axis == axis:
         reference_rad: tuple[float, float] | None = (schedule.min_rad, schedule.max_rad)
     else:
         reference_rad = _within(stops_rad, _AZIMUTH_SHARE if axis == "azimuth" else _SHARE)
-    defaults = {**AXIS_DEFAULTS.get(axis, PLAIN_AXIS), **(OWN_POLES if "poles_rad_s" in section else {})}
+    defaults = {**PLAIN_AXIS, **of_model, **(OWN_POLES if "poles_rad_s" in section else {})}
     filter_s = checks.number(
         _entry(section, "prefilter_time_constant_s", defaults), f"{where}.prefilter_time_constant_s"
     )

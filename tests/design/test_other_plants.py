@@ -106,7 +106,6 @@ def test_an_arm_that_stands_on_its_hinge_is_held(tmp_path: Path) -> None:
             r"arm at theta = 5\.7 deg: poles: got 6 poles of an axis of 2",
         ),
         ({"arm": {"poles_rad_s": [-4, -5, -6, -7], "output": "psi_rad"}}, r"output 'psi_rad'.*theta_rad"),
-        ({"arm": {}}, r"'poles_rad_s'"),
         ({"schedule": "psi_rad"}, r"schedule: got 'psi_rad'.*theta_rad"),
         ({"theta_max_rad": 1.5}, r"input u_V.*V needed to rest there"),
     ],
@@ -115,6 +114,15 @@ def test_what_cannot_be_designed_is_one_line_that_names_it(change: dict[str, Any
     with pytest.raises(BadInput, match=message) as caught:
         designed(plant("aeroshield"), {**AEROSHIELD, **change})
     assert "\n" not in str(caught.value)
+
+
+def test_wishes_left_out_are_those_of_the_model_s_own_file(tmp_path: Path) -> None:
+    """Truth: plants/aeroshield.toml; equations of one's own have no such file, and name their poles."""
+    stated = read_settings(plant("aeroshield"))
+    left_out = {**AEROSHIELD, "arm": {}}
+    assert read_settings(bind(replace(plant("aeroshield").plant, design=left_out))) == stated
+    with pytest.raises(BadInput, match="'poles_rad_s'"):
+        designed(written("motor", tmp_path), {**MOTOR, "shaft": {}})
 
 
 def test_degrees_without_a_schedule_are_refused(tmp_path: Path) -> None:
