@@ -7,6 +7,7 @@ from typing import Any
 from design.pins import with_pins
 from records.errors import BadInput
 from records.loops import LOOPS, MOST_LOOPS, Loop
+from records.pages import page
 from records.table import parse_loops
 from records.text import checks
 from sim.bind import BoundPlant
@@ -24,7 +25,7 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
     board, board_where = bound.plant.board, where.removesuffix("design") + "board"
     if not missing(bound):
         if board:
-            expected = "none: the helicopter's loops have the board's own pins, docs/firmware.md"
+            expected = f"none: the helicopter's loops have the board's own pins, {page('firmware.md')}"
             raise BadInput("section [board]", board_where, "pins", expected, "leave it out")
         return LOOPS
     names = [key for key, entry in section.items() if isinstance(entry, Mapping) and key not in _NO_LOOP]

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from records.errors import BadInput
+from records.pages import page
 from records.plant import Parameter
 from sim.bind import BoundPlant, bind
 from sim.composition.build import carried, model_with, paths_with
@@ -139,7 +140,9 @@ def _entries(effect: Effect, given: Values, sd: Values, source: str, where: str)
 def _check_symbol(effect: Effect, symbol: str, where: str) -> None:
     if symbol not in effect.parameter:
         known = ", ".join(effect.parameter)
-        raise BadInput(f"parameter {symbol!r}", where, "an unknown name", f"one of {known}", "see docs/effects.md")
+        raise BadInput(
+            f"parameter {symbol!r}", where, "an unknown name", f"one of {known}", f"see {page('effects.md')}"
+        )
 
 
 __all__ = [

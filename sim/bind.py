@@ -8,6 +8,7 @@ import sympy
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from records.pages import page
 from records.plant import Parameter, Plant
 from records.text.units import dimensions
 from sim.composition.build import model_with, paths_with
@@ -121,7 +122,7 @@ def _check_parameter(spec: ParameterSpec, entry: Parameter, where: str) -> None:
     if len(entry.values) != spec.count or isinstance(entry.value, tuple) != (spec.count > 1):
         expected = "one number" if spec.count == 1 else f"a list of {spec.count} coefficients, ascending powers"
         got = f"{len(entry.values)} coefficients" if isinstance(entry.value, tuple) else "one number"
-        raise BadInput("value", where, got, expected, "see the equations in docs/theory.md")
+        raise BadInput("value", where, got, expected, f"see the equations in {page('theory.md')}")
     found, wanted = dimensions(entry.unit), dimensions(spec.unit)
     if found != wanted:
         raise BadInput("unit", where, repr(entry.unit), repr(spec.unit), "convert the value to that unit")

@@ -1,6 +1,8 @@
 """The wheel, installed away from the checkout on a read-only folder: the command finds its firmware, plants and pages there."""
 
+import ast
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -26,7 +28,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True).stdout.decode()
     for name in filter(None, listed.split("\0")):
-        if (ROOT / name).is_file() and not name.startswith(("docs/", "tests/")):
+        if (ROOT / name).is_file() and not name.startswith("tests/"):
             (folder / "source" / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, folder / "source" / name)
     build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
@@ -49,19 +51,32 @@ def bin_dir(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home / "bin"
 
 
-def told(bin_dir: Path, folder: Path, *words: str) -> str:
-    """What the installed command prints in a folder of the user's."""
+def ended(bin_dir: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """The installed command, run in a folder of the user's."""
     given = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     given["TWINLAW_CACHE"] = str(CACHE_DIR)  # of compiled code, by content
     command = [str(bin_dir / "twinlaw"), *words]
-    done = subprocess.run(command, cwd=folder, env=given, capture_output=True, text=True, check=False)
+    return subprocess.run(command, cwd=folder, env=given, capture_output=True, text=True, check=False)
+
+
+def told(bin_dir: Path, folder: Path, *words: str) -> str:
+    """What it prints."""
+    done = ended(bin_dir, folder, *words)
     assert done.returncode == 0, f"{words}\n{done.stdout}{done.stderr}"
     return done.stdout
 
 
+def _is_shipped(name: str) -> bool:
+    """Of the documentation the pages alone: figures, notebooks and what makes a site of it stay behind."""
+    folder, _, page = name.partition("/")
+    return folder != "docs" or ("/" not in page and page.endswith(".md"))
+
+
 def test_the_wheel_holds_every_file_of_the_packages_and_of_their_data(wheel: Path) -> None:
     tracked = subprocess.run(["git", "ls-files", "-z", *PACKAGES, *DATA], cwd=ROOT, capture_output=True, check=True)
-    names = {name for name in tracked.stdout.decode().split("\0") if name and (ROOT / name).is_file()}
+    names = {
+        name for name in tracked.stdout.decode().split("\0") if name and (ROOT / name).is_file() and _is_shipped(name)
+    }
     held = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
     assert held == names
 
@@ -74,6 +89,33 @@ def test_firmware_comes_out_of_an_installed_wheel(bin_dir: Path, tmp_path: Path)
     write_atomic(tmp_path / "controller.json", table_text(ce150_table()))
     told(bin_dir, tmp_path, "build", "--table", "controller.json")
     assert (tmp_path / "build" / "firmware.bin").stat().st_size > 10_000
+
+
+def test_a_page_that_a_message_names_is_there(bin_dir: Path, tmp_path: Path) -> None:
+    """Truth: the whole name of a file that is installed; a plant whose equations are wrong is told of one."""
+    told(bin_dir, tmp_path, "new-plant", "mine", "--out", "mine")
+    equations = tmp_path / "mine" / "mine.py"
+    equations.write_text("")
+    refused = ended(bin_dir, tmp_path, "simulate", "--plant", "mine/plant.toml")
+    (page,) = re.findall(r"see (\S+\.md)", refused.stderr)
+    assert refused.returncode == 2
+    assert Path(page).is_relative_to(bin_dir.parent)
+    assert Path(page).read_text(encoding="utf-8") == (ROOT / "docs" / "new-plant.md").read_text(encoding="utf-8")
+
+
+def test_every_message_names_its_page_by_where_it_stands() -> None:
+    """A page in a text that the program prints is `page(NAME)`, and a file of docs/; docstrings, which --help shows, name docs/."""
+    named: set[str] = set()
+    for source in (path for package in PACKAGES for path in (ROOT / package).rglob("*.py")):
+        tree = ast.parse(source.read_text(encoding="utf-8"))
+        prose = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in prose:
+                assert not re.search(r"docs/[\w-]+\.md", node.value), f"{source}:{node.lineno}"
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "page":
+                named |= {argument.value for argument in node.args if isinstance(argument, ast.Constant)}
+    assert len(named) > 4
+    assert all((ROOT / "docs" / name).exists() for name in named)
 
 
 @pytest.mark.soak

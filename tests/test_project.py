@@ -19,7 +19,7 @@ from tests.soak import sampled
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-DATA = {"firmware", "plants"}  # shipped beside the packages
+DATA = {"docs", "firmware", "plants"}  # shipped beside the packages
 PACKAGES = sorted(path.parent.name for path in ROOT.glob("*/__init__.py"))
 
 

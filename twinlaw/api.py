@@ -6,7 +6,7 @@
     designed = twinlaw.design(plant)
     flight = twinlaw.fly(plant, designed.table)
 
-Every function raises records.errors.BadInput where a verb would end with its one line. docs/notebooks.md shows all of them.
+Every function raises records.errors.BadInput where a verb would end with its one line. docs/python.md shows all of them.
 """
 
 import tempfile

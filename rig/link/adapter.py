@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from records.pages import page
+
 SLOW_S = 0.01  # a sample and its answer, 80 bytes at 921 600 Bd, take 1 ms: ten times that is an adapter that waits
 SYSFS = Path("/sys/class/tty")
 
@@ -16,5 +18,6 @@ def latency_note(port: str, round_trip_s: float, sysfs: Path = SYSFS) -> str | N
     try:
         waits = f"{int(timer.read_text(encoding='ascii'))} ms"
     except (OSError, ValueError):
-        return f"{told}: the adapter or the computer waits; an FTDI adapter's latency timer is 16 ms as delivered (docs/hardware.md)"
+        delivered = "an FTDI adapter's latency timer is 16 ms as delivered"
+        return f"{told}: the adapter or the computer waits; {delivered} ({page('hardware.md')})"
     return f"{told}: the adapter's latency timer is {waits}; `echo 1 | sudo tee {timer}` sets it to 1 ms"

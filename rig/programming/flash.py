@@ -11,6 +11,7 @@ from pathlib import Path
 
 from records.board import STM32G071, Board
 from records.errors import BadInput, VerificationFailed
+from records.pages import page
 from rig.link.port import claimed
 
 _PSEUDO_TERMINALS = "/dev/pts/"
@@ -64,7 +65,7 @@ def flash_through_st_link(elf: Path, board: Board = STM32G071) -> None:
         return
     if "** Programming Started **" in done.stdout + done.stderr:
         raise _not_programmed(command[0], done)
-    remedy = "check the cable and the board's supply; docs/hardware.md"
+    remedy = f"check the cable and the board's supply; {page('hardware.md')}"
     if _PROTECTED.search(done.stdout + done.stderr):
         unlock = f'openocd -f {board.openocd_config} -c "init; reset halt; stm32l4x unlock 0; reset halt; shutdown"'
         remedy = f"a protected chip is freed by `{unlock}`, which ERASES THE WHOLE FLASH; then cut its supply once"
@@ -104,7 +105,7 @@ def _demand_chip(asked: subprocess.CompletedProcess[str], port: str, board: Boar
             port,
             asked,
             "the chip's boot loader to answer",
-            "how the chip starts its boot loader is in docs/hardware.md",
+            f"how the chip starts its boot loader is in {page('hardware.md')}",
         )
     chip_id = re.search(r"Device ID\s*:\s*0x([0-9a-fA-F]+)", asked.stdout)
     if chip_id is None or int(chip_id[1], 16) != board.boot_loader_id:

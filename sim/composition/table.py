@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from records.errors import BadInput
+from records.pages import page
 from records.plant import Parameter, parameter_entry
 from records.text import checks
 from records.text.units import dimensions
@@ -39,7 +40,7 @@ def find_effect(model: Model, name: str, where: str) -> Effect:
     _check_place(place, model, where)
     near = difflib.get_close_matches(name, library, 4, 0.5) or [other for other in library if other.startswith(place)]
     raise BadInput(
-        f"effect {name!r}", where, "no effect of the library", f"such as {', '.join(near)}", "see docs/effects.md"
+        f"effect {name!r}", where, "no effect of the library", f"such as {', '.join(near)}", f"see {page('effects.md')}"
     )
 
 

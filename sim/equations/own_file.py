@@ -9,10 +9,11 @@ from types import ModuleType
 from typing import Any
 
 from records.errors import BadInput
+from records.pages import page
 from records.plant import Equations
 from sim.model import Model
 
-REMEDY = "see docs/new-plant.md"
+REMEDY = f"see {page('new-plant.md')}"
 
 
 def run_file(equations: Equations) -> Model:

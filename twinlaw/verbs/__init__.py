@@ -10,10 +10,11 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from records.pages import page
 from twinlaw.cli.parser import Parser
 
 DESCRIPTION = "From a plant's equations to a verified flight of a microcontroller, and back."
-EPILOGUE = "Start with: twinlaw run --plant plants/ce150.toml --out build"
+EPILOGUE = f"Start with: twinlaw run --plant plants/ce150.toml --out build. The pages are in {page('')}"
 
 # The word that a person types, and the file of this folder that answers it.
 VERBS: Mapping[str, str] = {
