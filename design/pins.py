@@ -25,6 +25,8 @@ from sim.bind import BoundPlant
 
 # A plant file states a sensor's step, and its scale states it again: as many digits as one would print.
 _STEP_AGREES = 1e-4
+# What a driver behind a PWM gives at full duty [V]: below, its own drops are more; above, it is none of a board's.
+_DRIVERS_V = (0.1, 1000.0)
 
 
 def with_pins(
@@ -113,14 +115,16 @@ def _demand_stated_step(bound: BoundPlant, loop: Loop, where: str) -> None:
 
 
 def _full_scale_V(bound: BoundPlant, loop: Loop, driven: Mapping[str, Any], where: str) -> float:
-    if "full_scale_V" in driven:
-        return checks.positive(driven["full_scale_V"], f"{where}.full_scale_V")
     symbol = next(symbol for symbol in bound.model.inputs if symbol.name == loop.input)
-    largest_V = max(map(abs, bound.limits(symbol)))
-    if not math.isfinite(largest_V) or largest_V == 0.0:
-        expected = "full_scale_V, as the plant's input has no limits"
-        raise BadInput("full scale", where, "nothing", expected, "write the voltage at full duty: full_scale_V = 12.0")
-    return largest_V
+    if "full_scale_V" in driven:
+        full_V, told = checks.positive(driven["full_scale_V"], f"{where}.full_scale_V"), "full_scale_V = "
+    else:
+        full_V, told = max(map(abs, bound.limits(symbol))), "none stated, and the input's own limits of "
+    low_V, high_V = _DRIVERS_V
+    if not low_V <= full_V <= high_V:
+        expected = f"{low_V:g} to {high_V:g} V at full duty"
+        raise BadInput("full scale", where, f"{told}{full_V:g} V", expected, "write it: full_scale_V = 12.0")
+    return full_V
 
 
 def _unknown(what: str, where: str, got: str, known: str, board: Board) -> BadInput:

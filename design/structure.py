@@ -47,7 +47,16 @@ def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, An
         key: section.get(key, str(found[0]) if len(found) == 1 else "one of " + " or ".join(map(str, found)))
         for key, found in only.items()
     }
+    if columns["output"] in outputs and columns["input"] in inputs:
+        _demand_units(columns["output"], columns["input"], where)
     return {"axis": name, **columns, "motor": name}
+
+
+def _demand_units(output: str, input: str, where: str) -> None:
+    if not (output.endswith("_rad") and input.endswith("_V")):
+        expected = "an angle [rad] and a voltage [V]: theta_rad, u_V"
+        remedy = "choose such a loop; without [design] `simulate`, `identify` and `diagnose` take this plant"
+        raise BadInput("loop", where, f"{output} and {input}", expected, remedy)
 
 
 def _demand_column(what: str, name: str, known: list[str], where: str) -> None:

@@ -116,6 +116,11 @@ def test_what_cannot_be_designed_is_one_line_that_names_it(change: dict[str, Any
     assert "\n" not in str(caught.value)
 
 
+def test_a_loop_of_a_current_is_refused_with_what_takes_its_plant() -> None:
+    with pytest.raises(BadInput, match=r"design.coil: loop: got i_A and u_1.*without \[design\] `simulate`"):
+        read_settings(bind(replace(plant("maglev_coil").plant, design={"coil": {"poles_rad_s": [-1.0, -2.0]}})))
+
+
 def test_wishes_left_out_are_those_of_the_model_s_own_file(tmp_path: Path) -> None:
     """Truth: plants/aeroshield.toml; equations of one's own have no such file, and name their poles."""
     stated = read_settings(plant("aeroshield"))

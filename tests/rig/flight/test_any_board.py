@@ -247,6 +247,10 @@ WRONG = [
     ({"theta_rad": SHORT | {"analogue": "PA8"}}, r"analogue input: got PA8"),
     ({"u_V": {"pwm": "PA8", "full_scale_V": 0}}, r"board.u_V.full_scale_V: number: got 0"),
     (
+        {"u_V": {"pwm": "PA8", "full_scale_V": 1e-300}},
+        r"full scale: got full_scale_V = 1e-300 V, expected 0.1 to 1000 V",
+    ),
+    (
         {"u_V": {"pwm": "PA8", "direction": "PB1"}},
         r"board.u_V: output: got PA8 and PB1.*pwm \"PA8\" with direction \"PB0\"",
     ),
