@@ -8,7 +8,9 @@ import pytest
 
 from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
-from records.protocol import PROTOCOL
+from records.loops import Analogue, Pins
+from records.protocol import PROTOCOL, protocol_of
+from tests.codegen.test_any_loops import any_table
 from tests.law_tables import ce150_table
 from tests.soak import sampled
 from verification.proofs import sources
@@ -30,6 +32,16 @@ def subject(arithmetic: str = "float32") -> Subject:
 @pytest.mark.parametrize("arithmetic", sampled(["float32", "fixed"], keep=["float32"]))
 def test_every_finding_in_the_product_is_justified_and_every_justification_used(arithmetic: str) -> None:
     result = prove(subject(arithmetic))
+    assert result.outcome == "proved", "\n".join(result.detail)
+
+
+@needs_cppcheck
+def test_the_control_path_of_a_table_with_an_analogue_sensor_alone_is_justified_too() -> None:
+    table = any_table((2,), None)
+    pins = Pins(None, "PA8", "PB0", Analogue("PA4", -2.0, 2.0))
+    table = replace(table, loops=(replace(table.loops[0], pins=pins),))
+    generated = {**generate_law(table), **protocol_source(protocol_of(table.loops))}
+    result = prove(Subject(table, generated, b""))
     assert result.outcome == "proved", "\n".join(result.detail)
 
 
