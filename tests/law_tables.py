@@ -1,9 +1,11 @@
-"""Controller tables for tests, placed here in mpmath so that they need no design stage and have one digest on every processor."""
+"""Controller tables for tests, placed here in 50 digits: they need no design stage and have one digest on every processor."""
 
+import math
+from collections.abc import Sequence
 from functools import cache
 
-import mpmath
 import numpy as np
+from flint import arb, arb_mat, ctx
 
 from codegen.law_equations import axis_state
 from codegen.law_frame import state_size
@@ -13,7 +15,7 @@ SAMPLE_PERIOD_S = 0.01
 RESOLUTION_RAD = 2.0 * np.pi / 4096.0
 PSI_GRID_RAD = tuple(np.radians(np.arange(-40.0, 41.0, 5.0)).tolist())
 DIGITS = 50
-Row = list[mpmath.mpf]
+Row = list[arb]
 AXIS_STATE_FIELDS = tuple(axis_state(3).__dataclass_fields__)
 STATE_WORDS = state_size(axis_state(3), 2)
 
@@ -22,7 +24,7 @@ STATE_WORDS = state_size(axis_state(3), 2)
 def ce150_table(degree: int = 3, prefilter_time_constant_s: float = 0.35) -> ControllerTable:
     """Like the CE150 of facts/ce150.md C4: an integrating elevation (dom2/int) and an azimuth without (eq4/q3)."""
     elevation, azimuth = _both_placed()
-    with mpmath.workdps(DIGITS):
+    with ctx.workdps(DIGITS):
         return ControllerTable(
             plant="ce150",
             sample_period_s=SAMPLE_PERIOD_S,
@@ -38,9 +40,9 @@ def ce150_table(degree: int = 3, prefilter_time_constant_s: float = 0.35) -> Con
 @cache
 def _both_placed() -> tuple[list[tuple[Row, Row]], list[tuple[Row, Row]]]:
     """Q and P of both axes over the grid."""
-    with mpmath.workdps(DIGITS):
-        elevation_poles = [mpmath.exp(SAMPLE_PERIOD_S * s) for s in (-3.0, -4.0, -7.0, -12.0, -15.0, -20.0)]
-        azimuth_poles = [mpmath.exp(SAMPLE_PERIOD_S * -4.0)] * 6
+    with ctx.workdps(DIGITS):
+        elevation_poles = [(arb(SAMPLE_PERIOD_S) * s).exp() for s in (-3.0, -4.0, -7.0, -12.0, -15.0, -20.0)]
+        azimuth_poles = [(arb(SAMPLE_PERIOD_S) * -4.0).exp()] * 6
         elevation = [_placed(*_elevation_plant(psi), elevation_poles, integral=True) for psi in PSI_GRID_RAD]
         azimuth = [_placed(*_azimuth_plant(psi), azimuth_poles, integral=False) for psi in PSI_GRID_RAD]
     return elevation, azimuth
@@ -56,7 +58,7 @@ def _axis(
 ) -> AxisLaw:
     q = zip(*(_delta_form(Q) for Q, _ in placed), strict=True)
     p = zip(*(_recursion_delta_form(P) for _, P in placed), strict=True)
-    a = _recursion_delta_form(_with_roots([mpmath.mpf("0.9")] * 3))
+    a = _recursion_delta_form(_with_roots([arb("0.9")] * 3))
     return AxisLaw(
         q_V_rad=tuple(_fitted(column, degree) for column in q),
         p=tuple(_fitted(column, degree) for column in p),
@@ -72,62 +74,71 @@ def _axis(
     )
 
 
-def _fitted(values: tuple[mpmath.mpf, ...], degree: int) -> Polynomial:
+def _fitted(values: tuple[arb, ...], degree: int) -> Polynomial:
     """Least squares in Psi; what vanishes on the grid vanishes exactly."""
     if max(map(abs, values)) < 1e-9:
         return (0.0,)
-    powers = mpmath.matrix([[mpmath.mpf(psi) ** power for power in range(degree + 1)] for psi in PSI_GRID_RAD])
-    return tuple(float(c) for c in mpmath.lu_solve(powers.T * powers, powers.T * mpmath.matrix(values)))
+    powers = arb_mat([[arb(psi) ** power for power in range(degree + 1)] for psi in PSI_GRID_RAD])
+    transposed = powers.transpose()
+    return tuple(float(c) for c in (transposed * powers).solve(transposed * _column(values)).entries())
 
 
-def _elevation_plant(psi_rad: float) -> tuple[mpmath.mpf, Row]:
+def _elevation_plant(psi_rad: float) -> tuple[arb, Row]:
     """Rotor lag of 7 /s into a damped pendulum of -tau_gE sin(psi)/J_E: numerator, and denominator behind s^3."""
-    stiffness = 0.0383 / 4.37e-3 * -mpmath.sin(psi_rad)
-    return mpmath.mpf(22), [7 + 0.42, 7 * 0.42 + stiffness, 7 * stiffness]
+    stiffness = 0.0383 / 4.37e-3 * -arb(psi_rad).sin()
+    return arb(22), [7 + 0.42, 7 * 0.42 + stiffness, 7 * stiffness]
 
 
-def _azimuth_plant(psi_rad: float) -> tuple[mpmath.mpf, Row]:
+def _azimuth_plant(psi_rad: float) -> tuple[arb, Row]:
     """Tail rotor lag of 3.5 /s into a damped inertia J_A cos(psi)."""
-    inertia = 4.14e-3 * mpmath.cos(psi_rad)
+    inertia = 4.14e-3 * arb(psi_rad).cos()
     damping = 8.69e-3 / inertia
-    return 0.02 / inertia, [3.5 + damping, 3.5 * damping, mpmath.mpf(0)]
+    return 0.02 / inertia, [3.5 + damping, 3.5 * damping, arb(0)]
 
 
-def _sampled(numerator: mpmath.mpf, denominator: Row) -> tuple[Row, Row]:
+def _sampled(numerator: arb, denominator: Row) -> tuple[Row, Row]:
     """Zero-order hold of a third-order plant: B and A in powers of z^-1, by Faddeev and LeVerrier from the matrix exponential."""
-    s = mpmath.zeros(4)
-    s[0, 1] = s[1, 2] = mpmath.mpf(1)
+    s = arb_mat(4, 4)
+    s[0, 1] = s[1, 2] = arb(1)
     for column, value in enumerate(reversed(denominator)):
         s[2, column] = -value
     s[2, 3] = numerator
-    held = mpmath.expm(s * SAMPLE_PERIOD_S, method="taylor")
-    state, drive = held[:3, :3], held[:3, 3]
-    B, A, power = [mpmath.mpf(0)], [mpmath.mpf(1)], mpmath.eye(3)
+    held = (s * arb(SAMPLE_PERIOD_S)).exp().tolist()
+    state, drive, one = arb_mat([row[:3] for row in held[:3]]), _column([row[3] for row in held[:3]]), _identity(3)
+    B, A, power = [arb(0)], [arb(1)], one
     for order in (1, 2, 3):
-        B.append((power * drive)[0])
+        B.append((power * drive)[0, 0])
         step = state * power
-        A.append(-(step[0, 0] + step[1, 1] + step[2, 2]) / order)
-        power = step + A[-1] * mpmath.eye(3)
+        A.append(-step.trace() / order)
+        power = step + one * A[-1]
     return B, A
 
 
-def _placed(numerator: mpmath.mpf, denominator: Row, poles: Row, *, integral: bool) -> tuple[Row, Row]:
+def _placed(numerator: arb, denominator: Row, poles: Row, *, integral: bool) -> tuple[Row, Row]:
     """Q, P of third order in z^-1 with A P + B Q = product of (1 - pole z^-1); the free degree is P(1) = 0 or q_3 = 0."""
     B, A = _sampled(numerator, denominator)
-    system = mpmath.zeros(8)
+    system = arb_mat(8, 8)
     for column in range(4):
         for row in range(4):
             system[column + row, column] = A[row]
             system[column + row, 4 + column] = B[row]
     for column in range(8):
         system[7, column] = float(column < 4 if integral else column == 7)
-    solved = list(mpmath.lu_solve(system, mpmath.matrix([*_with_roots(poles), 0])))
+    solved = system.solve(_column([*_with_roots(poles), arb(0)])).entries()
     return solved[4:], solved[:4]
+
+
+def _column(values: Sequence[arb]) -> arb_mat:
+    return arb_mat([[value] for value in values])
+
+
+def _identity(order: int) -> arb_mat:
+    return arb_mat([[int(row == column) for column in range(order)] for row in range(order)])
 
 
 def _with_roots(roots: Row) -> Row:
     """Coefficients of the product of (1 - root z^-1)."""
-    product = [mpmath.mpf(1)]
+    product = [arb(1)]
     for root in roots:
         product = [one - root * before for one, before in zip([*product, 0], [0, *product], strict=True)]
     return product
@@ -135,9 +146,7 @@ def _with_roots(roots: Row) -> Row:
 
 def _delta_form(Q: Row) -> Row:
     """Coefficients in powers of delta = 1 - z^-1, from z^-i = (1 - delta)^i."""
-    return [
-        (-1) ** power * sum(mpmath.binomial(i, power) * Q[i] for i in range(power, len(Q))) for power in range(len(Q))
-    ]
+    return [(-1) ** power * sum(math.comb(i, power) * Q[i] for i in range(power, len(Q))) for power in range(len(Q))]
 
 
 def _recursion_delta_form(P: Row) -> Row:
