@@ -5,8 +5,10 @@ import platform
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
+from design.schedule import fit, stored_fit
 from tests.controllers.rows import ROWS, designed
 from tests.plants import stated_table
 from tests.soak import SOAK, sampled
@@ -31,6 +33,15 @@ for name in sys.argv[1:]:
 NAMES = tuple(name for name in ROWS if SOAK or name != "pid")
 # Names by which OpenBLAS picks its kernels: without fused products, with longer vectors, with both, with the longest.
 KERNELS = ("Prescott", "Sandybridge", "Haswell", "SkylakeX")
+
+
+def test_values_that_differ_by_their_rounding_are_stored_alike() -> None:
+    # Truth: what another processor's products leave is a few units in the last of sixteen places; a table holds eight.
+    psi_rad = np.linspace(-0.7, 0.7, 17)
+    values = 30.0 * np.cos(psi_rad) + 4.0 * psi_rad
+    otherwise = values * (1.0 + 1e-15 * np.random.default_rng(1).integers(-4, 5, values.shape))
+    assert fit(psi_rad, otherwise, 3) != fit(psi_rad, values, 3)
+    assert stored_fit(psi_rad, otherwise, 3) == stored_fit(psi_rad, values, 3)
 
 
 def own_digests() -> str:

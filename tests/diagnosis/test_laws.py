@@ -109,6 +109,7 @@ def test_a_hold_out_of_the_same_rig_changes_no_verdict(plainly: Callable[[str], 
     assert [e.effect for e in before.diagnosis.effects[:1]] == [e.effect for e in after.diagnosis.effects[:1]]
 
 
+@pytest.mark.soak
 def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     logs = [arm_log(RIGS["rubs"], seed=71, seconds=8.0)]
     before = answered(logs)

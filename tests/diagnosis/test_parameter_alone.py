@@ -1,14 +1,30 @@
 """A parameter far from what the plant file states is a gap of its own, told as that; and restless air is no reason to doubt a name."""
 
+from dataclasses import replace
+
 import pytest
 
 from diagnosis.diagnose import Material, diagnose
-from sim.bind import BoundPlant
+from sim.bind import BoundPlant, bind
+from tests.diagnosis.arm import arm, arm_log
 from tests.diagnosis.conftest import SPRUNG_SECONDS, Fly
 from tests.soak import SOAK, sampled
 
 SEEDS = (41, 42) if SOAK else (41,)  # the second is held out
 OFF = [("J_E", 0.7), ("K_A", 1.35), ("K_M", 0.65)]
+
+
+def test_of_an_arm_a_thrust_beyond_its_spread_is_told_and_nothing_else() -> None:
+    # Truth: the file takes each number to be known to 1 %, and its thrust a volt is five eighths of the rig's.
+    stated = arm().plant
+    known = {
+        name: replace(entry, sd=0.01 * entry.value if entry.sd else 0.0) for name, entry in stated.parameters.items()
+    }
+    known["K"] = replace(known["K"], value=known["K"].value / 1.6)
+    wrong = bind(replace(stated, parameters=known))
+    result = diagnose(wrong, Material([arm_log(seed=43, seconds=8.0)], [], [], [None])).diagnosis
+    assert (result.verdict, result.found) == ("gap", ())
+    assert any("parameter K is" in note for note in result.notes)
 
 
 @pytest.mark.parametrize(("name", "factor"), sampled(OFF, keep=[]))

@@ -11,6 +11,7 @@ from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.jitter import jitter_sd, most_shown_s, with_jitter
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.fitting import Job, refined, rough
 from records.log import RunLog
@@ -36,6 +37,7 @@ def late_flight(plant: BoundPlant, jitter_s: float) -> RunLog:
     return replace(fly_law(late, table, lively), extra={})
 
 
+@pytest.mark.soak
 def test_the_fit_of_a_delay_finds_its_scatter(plant: BoundPlant) -> None:
     # Begun where its score test begins; 1500 readings tell a scatter to some 4 %.
     case = make_case(effect_library(plant), [late_flight(plant, JITTER_S)])
@@ -49,6 +51,13 @@ def test_the_fit_of_a_delay_finds_its_scatter(plant: BoundPlant) -> None:
     assert values["tau"] == pytest.approx(TAU_S, rel=0.03)
     assert values["jitter"] == pytest.approx(JITTER_S, rel=0.15)
     assert abs(values["jitter"] - JITTER_S) < 3.0 * jitter_sd(case, found.fit.hypothesis, DELAY) < 0.5 * JITTER_S
+
+
+def test_a_delay_that_is_known_has_the_scatter_that_its_readings_show(plant: BoundPlant) -> None:
+    # Truth: JITTER_S; 1500 readings tell a scatter to some 4 %.
+    case = make_case(effect_library(plant), [late_flight(plant, JITTER_S)])
+    late = nominal_hypothesis(case, -2.0).with_effects({DELAY: {"tau": TAU_S, "jitter": 0.0}})
+    assert with_jitter(case, late, [DELAY]).effects[DELAY]["jitter"] == pytest.approx(JITTER_S, rel=0.15)
 
 
 @pytest.mark.soak

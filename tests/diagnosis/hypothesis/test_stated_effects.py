@@ -69,6 +69,7 @@ def test_a_second_effect_is_found_beside_the_stated_one(sprung: Result, fly: Fly
     assert set(bind(again.plant).effects) == {"azimuth.cable_spring", "elevation.quadratic_drag"}
 
 
+@pytest.mark.soak
 def test_another_size_of_the_stated_effect_is_a_re_tune(plant: BoundPlant, fly: Fly) -> None:
     # Truth: the file states a drag of 2e-3 with 5 %, the rig has twice that: 20 standard deviations, and nothing else is missing.
     stated = with_effects(plant, {DRAG: {"c": 2e-3}}, sd={DRAG: {"c": 1e-4}})

@@ -42,6 +42,7 @@ def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, FittedHypothesis
     return case, as_fitted(case, nominal_fit(case))
 
 
+@pytest.mark.soak
 def test_a_gust_is_noise_of_its_axis_with_its_numbers(plant: BoundPlant, fly: Fly) -> None:
     # The draw's own size within three deviations of what is known of it, its time to a factor of two: sines are a process of first order
     # only in the mean of many draws.
@@ -65,6 +66,7 @@ def test_still_air_has_no_gust(plant: BoundPlant, fly: Fly) -> None:
     assert draught(case, nominal)[0] is None
 
 
+@pytest.mark.soak
 def test_an_axis_that_is_held_feels_no_gust(plant: BoundPlant, fly: Fly) -> None:
     # Truth: the air pushes the elevation, which is held.
     _, nominal = alone(plant, [replace(fly(93, GUST, 10.0, rig_seed=90), locked=("elevation",))])

@@ -63,6 +63,7 @@ def test_nine_experiments_give_a_plant_file_a_report_and_json(folder, monkeypatc
         assert words in page
 
 
+@pytest.mark.soak
 def test_a_few_experiments_name_what_they_cannot_tell(folder, tmp_path, capsys):
     assert main(["identify", "--out", str(tmp_path), *some(folder)]) == 0
     said = capsys.readouterr().out

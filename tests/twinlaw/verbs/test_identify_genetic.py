@@ -29,6 +29,7 @@ def folder(tmp_path_factory):
     return path
 
 
+@pytest.mark.soak
 def test_a_rig_as_stated_has_the_plant_file_s_numbers(folder):
     assert load_plant(folder / "truth.toml").parameters == load_plant(Path(PLANT[1])).parameters
     assert sorted(path.name for path in folder.glob("0*.toml")) == [
@@ -72,6 +73,7 @@ def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folde
         assert found[name] == pytest.approx(truth.parameter(name), rel=6e-3 if name.endswith("_inv") else 2e-3), name
 
 
+@pytest.mark.soak
 def test_an_interrupted_search_leaves_the_best_so_far(monkeypatch, folder, tmp_path):
     """Ctrl-C in the tenth generation of the first stage: plant.toml has what was best until then, and says so."""
     turns, original = [], genetic._next

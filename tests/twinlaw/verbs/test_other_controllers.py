@@ -14,6 +14,7 @@ from twinlaw.workflows.chain import boards
 PLANT = str(ROOT / "plants" / "ce150.toml")
 
 
+@pytest.mark.soak
 def test_its_image_starts_on_the_board_names_its_table_and_answers_bit_for_bit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
