@@ -38,7 +38,7 @@ def test_twin_and_host_are_equal_in_all_bits_of_many_steps(name: str) -> None:
     assert result.equality.steps >= STEPS
 
 
-@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.parametrize("name", sampled(ROWS, keep=["lqg", "fuzzy"]))
 def test_host_and_target_are_equal_and_the_board_names_the_table(name: str) -> None:
     row, table = designed(name)
     texts = row.generate(table)

@@ -11,6 +11,7 @@ import pytest
 from blind.cases.make import make
 from records.errors import BadInput
 from records.log import save_log
+from tests.blind.conftest import shorten
 from tests.diagnosis.arm import arm_log
 from tests.soak import SOAK
 from tests.test_project import ROOT
@@ -117,6 +118,7 @@ def test_each_is_answered_as_alone_and_only_once(
 def test_a_sealed_case_is_the_same_from_a_process_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    shorten(monkeypatch)
     if not SOAK:  # from processes the same comes in tests/jobs/test_run.py
         works_here(monkeypatch)
     make(6, tmp_path / "here", 1, ("nominal",))
