@@ -7,6 +7,8 @@ OUT ?= build
 # What is imported is compiled then, once; most of what is installed never is imported, and a suite is hundreds of processes.
 INSTALL := install --quiet --disable-pip-version-check --no-compile
 PIP := $(BIN)/python -m pip $(INSTALL)
+# What builds this project is there then: for an environment of its own pip would call itself twice more.
+EDITABLE := --no-build-isolation --editable
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help run test docs soak check lint types layers bench clean
@@ -48,24 +50,24 @@ clean:  ## remove what can be made again; the virtual environment stays
 # The pip that comes with an old Python takes twice as long to choose among releases: it fetches the new one from within its wheel, and
 # is installed, for as long as that takes, only where Python brings none.
 BUNDLED := import ensurepip, pathlib; print(next(pathlib.Path(ensurepip.__file__).parent.glob("_bundled/pip-*.whl")))
-$(VENV)/.pip:
+$(VENV)/.tools:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "twinlaw needs Python 3.11 or newer, this is " + sys.version.split()[0] + "; set PYTHON=/path/to/python3")'
 	test -x $(BIN)/python || $(PYTHON) -m venv --without-pip $(VENV)
-	wheel="$$($(BIN)/python -c '$(BUNDLED)' 2>/dev/null)" && $(BIN)/python "$$wheel/pip" $(INSTALL) pip || { $(BIN)/python -m ensurepip && $(PIP) --upgrade pip; }
+	wheel="$$($(BIN)/python -c '$(BUNDLED)' 2>/dev/null)" && $(BIN)/python "$$wheel/pip" $(INSTALL) pip hatchling || { $(BIN)/python -m ensurepip && $(PIP) --upgrade pip hatchling; }
 	touch $@
 
-$(VENV)/.run: pyproject.toml | $(VENV)/.pip
-	$(PIP) --editable .
+$(VENV)/.run: pyproject.toml | $(VENV)/.tools
+	$(PIP) $(EDITABLE) .
 	touch $@
 
-$(VENV)/.test: pyproject.toml | $(VENV)/.pip
-	$(PIP) --editable '.[test]'
+$(VENV)/.test: pyproject.toml | $(VENV)/.tools
+	$(PIP) $(EDITABLE) '.[test]'
 	touch $(VENV)/.run $@
 
 $(VENV)/.soak: $(VENV)/.test
-	$(PIP) --editable '.[soak]'
+	$(PIP) $(EDITABLE) '.[soak]'
 	touch $@
 
 $(VENV)/.docs: $(VENV)/.run
-	$(PIP) --editable '.[docs]'
+	$(PIP) $(EDITABLE) '.[docs]'
 	touch $@
