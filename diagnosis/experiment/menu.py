@@ -7,6 +7,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis.experiment.stand_in import steered
 from diagnosis.hypothesis.case import Case
 from sim.model import Model
 
@@ -51,12 +52,10 @@ class Room:
 
 
 def rooms(case: Case) -> tuple[Room, ...]:
-    """The room of every axis with a position, from what the logs show and where its stops are."""
+    """The room of every axis that can be steered, from what the logs show and where its stops are."""
     model = case.library.bound.model
     found = []
-    for axis in model.axes:
-        if axis.position is None or axis.name not in model.places.axes:
-            continue
+    for axis in steered(model):
         place = model.places.axes[axis.name]
         column = list(model.outputs).index(place.angle)
         y = np.concatenate([flight.log.y[:, column] for flight in case.flights])

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.experiment.menu import Plan, gravity_parameters
-from diagnosis.experiment.stand_in import StandIn
+from diagnosis.experiment.stand_in import StandIn, steered
 from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
@@ -56,8 +56,7 @@ def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypoth
     start_s = max(float(flight.log.t_s[-1]) for flight in case.flights)
     x0 = np.asarray(start_state(library.bound, law.rest.x0), dtype=float)
     plant = Flown(case, _mounted(case, plan, hypothesis), x0, start_s, locked=plan.locked)
-    arms = [axis for axis in model.axes if axis.position is not None]
-    columns = [k for k, axis in enumerate(arms) if axis.name not in plan.locked]
+    columns = [k for k, axis in enumerate(steered(model)) if axis.name not in plan.locked]
     u, z = np.empty((len(plan.t_s), len(model.inputs))), np.zeros(len(law.tracked))
     y, x = np.empty((len(plan.t_s), len(model.outputs))), np.empty((len(plan.t_s), own))
     idle = law.within(np.zeros(len(model.inputs)))

@@ -16,6 +16,7 @@ from records.errors import BadInput
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint, equilibrium
 from sim.kernel.reference import Reference, reference
+from sim.model import Axis, Model
 
 Array = NDArray[np.float64]
 INTEGRAL_S = 1.0  # T_i
@@ -51,12 +52,18 @@ class StandIn:
         return np.asarray(np.minimum(np.maximum(u, self.low), self.high))
 
 
+def steered(model: Model) -> tuple[Axis, ...]:
+    """The axes that can be asked to follow a reference: those whose position is read."""
+    read = {name for name, place in model.places.axes.items() if place.angle in model.outputs}
+    return tuple(axis for axis in model.axes if axis.position is not None and axis.name in read)
+
+
 def stand_in(
     bound: BoundPlant, at: dict[str, float], size: Array, period_s: float, locked: tuple[str, ...] = ()
 ) -> StandIn | None:
     """The law about the rest point with the axes at `at` (by name); None where no law holds the plant there.
 
-    `size` (axes with a position,) is s_y of each. Axes that are `locked` stand still and follow nothing.
+    `size` (steered axes,) is s_y of each. Axes that are `locked` stand still and follow nothing.
     """
     model = bound.model
     arms = [axis for axis in model.axes if axis.position is not None]
@@ -64,7 +71,7 @@ def stand_in(
         rest = equilibrium(bound, *(at.get(axis.name, 0.0) for axis in arms))
     except BadInput:
         return None
-    free = [(axis, s) for axis, s in zip(arms, size.tolist(), strict=True) if axis.name not in locked]
+    free = [(axis, s) for axis, s in zip(steered(model), size.tolist(), strict=True) if axis.name not in locked]
     held = {symbol for axis in arms if axis.name in locked for symbol in (axis.position, axis.velocity)}
     kept = [place for place, state in enumerate(model.states) if state not in held]
     tracked = [model.states.index(axis.position) for axis, _ in free]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,15 +11,17 @@ from diagnosis.decide.weighing import Weighed
 from diagnosis.experiment.menu import gravity_parameters, plans
 from diagnosis.experiment.next_experiment import next_experiment
 from diagnosis.experiment.simulated_experiment import missed, recorded, setting, simulate_experiment
-from diagnosis.experiment.stand_in import stand_in
+from diagnosis.experiment.stand_in import stand_in, steered
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
-from sim.bind import BoundPlant
+from records.plant import load_plant
+from sim.bind import BoundPlant, bind
 from tests.diagnosis.conftest import Fly
+from tests.own_plants import WORKING
 from tests.plants import bound
 
 SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
@@ -115,6 +118,15 @@ def test_nothing_undecided_asks_for_nothing(case: Case, spring: FittedHypothesis
 def test_gravity_is_taken_out_by_what_is_gravity_alone(name: str, coefficients: tuple[str, ...]) -> None:
     # Truth by the equations: AeroShield's l and m also make its lever and inertia, EMPS moves level.
     assert gravity_parameters(bound(name).model) == coefficients
+
+
+def test_an_axis_that_nobody_reads_follows_no_reference(tmp_path: Path) -> None:
+    # Truth: of a motor that turns a load through a spring the motor's angle alone is read, and one input turns it.
+    elastic = bind(load_plant(WORKING["elastic"].write(tmp_path, "elastic")))
+    assert [axis.name for axis in steered(elastic.model)] == ["motor"]
+    law = stand_in(elastic, {}, np.array([0.1]), PERIOD_S)
+    assert law is not None
+    assert [str(elastic.model.states[place]) for place in law.tracked] == ["theta_rad"]
 
 
 def test_the_stand_in_law_holds_an_unstable_plant_along_its_references(case: Case) -> None:
