@@ -27,7 +27,7 @@ def test_a_column_that_was_never_read_says_nothing_of_where_most_moves() -> None
 
 
 def test_a_column_that_is_turned_is_refused_or_doubted_and_no_honest_one() -> None:
-    log = arm_log(seconds=6.0)
+    log = arm_log(seconds=16.0)  # long enough to tell a row too
     assert demand_columns(arm(), {"a": log}) == ()
     with pytest.raises(BadInput, match="theta_rad has the wrong sign"):
         demand_columns(arm(), {"a": replace(log, y=-log.y)})
