@@ -298,6 +298,12 @@ PUSH_SHARES = Limits(
 PUSH_TIMES_S = Limits(
     (0.06, 0.25, 1.0, 4.0), "s", "its correlation times that are begun from", "gusts of 0.3 to 3 s; third rig"
 )
+LONGEST_PUSH_SHARE = Limit(
+    0.25,
+    "share of the longest log",
+    "a torque that stays for longer is a constant there and no noise: it swallowed what a parameter beyond its spread does",
+    "a flight of 5 s, whose torque came and went within 30 s",
+)
 PUSH_LOWERS_NOISE = Limit(
     0.7, "decades", "white noise is lower where noise with a memory takes its place", "gusts of 0.3 to 3 s"
 )

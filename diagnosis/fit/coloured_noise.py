@@ -116,10 +116,11 @@ def _colours(case: Case) -> Iterator[Colour]:
     """All that the rig may have: on axes that are not held in all logs, in outputs that any log has."""
     library = case.library
     held = set.intersection(*(set(flight.locked) for flight in case.flights))
+    longest_s = decisions.LONGEST_PUSH_SHARE * max(float(np.ptp(flight.log.t_s)) for flight in case.flights)
     for index, axis in enumerate(library.bound.model.axes):
         effect = noise_on(case, index)
         if effect is not None and axis.name not in held:
-            yield _push(effect, library.bound.model.places.axes[axis.name].torque_size, index)
+            yield _push(effect, library.bound.model.places.axes[axis.name].torque_size, index, longest_s)
     step_s = min(flight.step_s for flight in case.flights)
     for name in library.bound.model.outputs:
         place = library.outputs.index(name)
@@ -128,9 +129,10 @@ def _colours(case: Case) -> Iterator[Colour]:
             yield _misreading(name, unit, step_s)
 
 
-def _push(effect: Effect, usual: float, axis: int) -> Colour:
+def _push(effect: Effect, usual: float, axis: int, longest_s: float) -> Colour:
     size, time = effect.symbol(Role.STRENGTH), effect.symbol(Role.MEMORY)
     bounds = effect.parameter[time]
+    upper = float(np.clip(longest_s, bounds.lower, bounds.upper))
 
     def of(hypothesis: Hypothesis) -> Numbers | None:
         values = hypothesis.effects.get(effect.name)
@@ -147,7 +149,8 @@ def _push(effect: Effect, usual: float, axis: int) -> Colour:
         process_noise[axis] -= decisions.PUSH_LOWERS_NOISE
         return [replace(hypothesis, process_noise=process_noise)]
 
-    starts = tuple((share * usual, time_s) for share in decisions.PUSH_SHARES for time_s in decisions.PUSH_TIMES_S)
+    times_s = dict.fromkeys(float(np.clip(time_s, bounds.lower, upper)) for time_s in decisions.PUSH_TIMES_S)
+    starts = tuple((share * usual, time_s) for share in decisions.PUSH_SHARES for time_s in times_s)
     return Colour(
         of,
         put,
@@ -155,7 +158,7 @@ def _push(effect: Effect, usual: float, axis: int) -> Colour:
         begun,
         starts,
         decisions.NO_NOISE_SHARE * decisions.PUSH_SHARES[0] * usual,
-        (bounds.lower, bounds.upper),
+        (bounds.lower, upper),
     )
 
 
