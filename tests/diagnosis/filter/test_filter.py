@@ -21,6 +21,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant, evaluated
 from sim.columns import log_columns
 from sim.simulate import Noise, simulate
+from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
 from tests.plants import stated_table
 from toolchain.host import CText, build_shared, c_text, load_shared
@@ -87,13 +88,15 @@ def test_noise_that_lasts_less_than_a_row_needs_no_further_instants(case: Case, 
     assert values[1] == pytest.approx(values[0], abs=0.5)
 
 
-def test_sure_readings_of_a_late_sensor_leave_no_variance_below_zero(case: Case, settled: Hypothesis) -> None:
+def test_sure_readings_of_a_late_sensor_leave_no_variance_below_zero() -> None:
     # What is expected of a reading is never surer than the reading: a millionth of the encoder's step, some rows behind a restless axis.
-    (flight,) = case.flights
+    arm = plain_linearisation()
+    (flight,) = arm.case.flights
     sure = replace(flight.filter_input, r=1e-12 * flight.filter_input.r, single=1e-12 * flight.filter_input.single)
-    late = {f"{axis}_sensor.lag": {"tau": 0.05} for axis in ("psi", "phi")}
+    settled = arm.fit.hypothesis
     restless = replace(settled, process_noise=np.full_like(settled.process_noise, -1.0))
-    (run,) = passes(case.with_flights([replace(flight, filter_input=sure)]), restless.with_effects(late)) or [None]
+    late = restless.with_effects({**restless.effects, "theta_sensor.lag": {"tau": 0.05}})
+    (run,) = passes(arm.case.with_flights([replace(flight, filter_input=sure)]), late) or [None]
     assert run is not None
     assert np.nanmin(run.s) > 1e-12 * flight.filter_input.r.min()
 

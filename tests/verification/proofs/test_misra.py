@@ -35,6 +35,7 @@ def test_every_finding_in_the_product_is_justified_and_every_justification_used(
     assert result.outcome == "proved", "\n".join(result.detail)
 
 
+@pytest.mark.soak
 @needs_cppcheck
 def test_the_control_path_of_a_table_with_an_analogue_sensor_alone_is_justified_too() -> None:
     table = any_table((2,), None)
