@@ -65,7 +65,8 @@ class Moved:
 def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LATE,)) -> tuple[Note, ...]:
     """What is to be known of the rows in which columns stand: that some may be others, or that these logs do not tell.
 
-    Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own.
+    Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own,
+    and by more than ROWS_REFUSED better.
     `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are.
     """
     short = case.with_flights([_begun(flight) for flight in case.flights])
@@ -97,12 +98,9 @@ class _Asked:
     usual: Fit
 
     def promised(self, slip: Misplaced) -> float:
-        """What a move gains, to first order in all that the plant's fit may then move: L + b' A^-1 b / 2, from where that fit is."""
+        """What a move gains, in nats, to first order in all that the plant's fit may then move; -inf where the filter fails."""
         at = fit(moved(self.case, slip), self.usual.hypothesis, rounds=0)
-        if at is None:
-            return -np.inf
-        further = 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull))
-        return at.log_posterior - self.usual.log_posterior + further
+        return -np.inf if at is None else at.log_posterior - self.usual.log_posterior + at.promised
 
     def moved(self, slip: Misplaced) -> Moved:
         """What a move gains once the plant is fitted to it."""

@@ -185,7 +185,8 @@ class Filter:
             yield places[begin:end], room[: end - begin, : request.awake]
 
     def pulls(self, filter_input: FilterInput, run: Pass, slots: Sequence[int]) -> Array:
-        """E'w by what is added to each state over each step (steps, states), E its answer in the whitened innovations w."""
+        """E'w (steps, states) by a unit that is added to each state over each step, E its answer in the whitened innovations w (rows,
+        slots): the adjoint of `respond`, which takes the gains that a run with `keep_gains` left."""
         assert run.gains is not None
         counts, places = _counted(filter_input, slots)
         found = np.empty((len(filter_input.t_s), self.states))

@@ -77,6 +77,11 @@ class Fit:
     information: Array
     pull: Array
 
+    @property
+    def promised(self) -> float:
+        """What a step to the top of the linear problem would gain, in nats: b' A^-1 b / 2 with A the information and b the pull."""
+        return 0.5 * float(self.pull @ np.linalg.solve(self.information, self.pull))
+
 
 def free_numbers(case: Case, hypothesis: Hypothesis, shapes: bool = True) -> tuple[Free, ...]:
     """The numbers of the supposed effects that a fit may move: those of which its slopes tell."""
@@ -173,7 +178,7 @@ def fit(case: Case, start: Hypothesis, *, rounds: int = 8, shapes: bool = True) 
     for _ in range(rounds):
         if at is None:
             return None
-        if damping == 0.0 and 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull)) < LEAST_STEP_GAIN:
+        if damping == 0.0 and at.promised < LEAST_STEP_GAIN:
             return at
         for _ in range(DAMPINGS):
             fitted = _linear(case, _moved(case, at, damping), free, at.log_posterior)
