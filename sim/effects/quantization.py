@@ -41,7 +41,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation="q round(u/q), held within (1/2 + h) q",
             story="The driver knows only coarse steps of voltage.",
-            source="a converter's or PWM's resolution",
+            source="a converter's or PWM's resolution; a comparator's hysteresis",
             prior=COMMON,
             on_input=lambda values, column=column: Quantised(column, values["q"], values.get("h", 0.0)),
             smooth=False,
@@ -74,5 +74,5 @@ def effects(model: Model) -> Iterator[Effect]:
 
 
 INPUT_STEPS = (0.005, 0.01, 0.02, 0.04, 0.08)
-HOLDS = (0.0, 0.12)
+HOLDS = (0.0, 0.12)  # shares of a step: a converter has none, of a comparator any size is near one of both
 OUTPUT_STEPS = (0.003, 0.006, 0.012, 0.025)
