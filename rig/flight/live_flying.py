@@ -1,4 +1,4 @@
-"""A board that flies on its own encoders, watched sample by sample: references go to it, telemetry comes back. The rotors turn."""
+"""A board that flies on its own sensors, watched sample by sample: references go to it, telemetry comes back. The rotors turn."""
 
 import math
 from typing import Protocol
@@ -97,7 +97,7 @@ def ticks_of_telemetry(period_s: float) -> int:
 
 
 class FlyingFlight:
-    """Flying on the board's own encoders. Time is the board's tick since the first telemetry; a disarmed board tells nothing."""
+    """Flying on the board's own sensors. Time is the board's tick since the first telemetry; a disarmed board tells nothing."""
 
     mode = "FLYING"
 

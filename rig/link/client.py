@@ -78,7 +78,7 @@ class BoardClient:
     def arm(self, mode: str) -> None:
         """Arm in `mode` ("FLYING" or "LOOP"); the board refuses a host whose table is not its own.
 
-        FLYING is on the board's own encoders: refused, before the board is asked, for loops without pins.
+        FLYING is on the board's own sensors: refused, before the board is asked, for loops without pins.
         """
         if mode == "FLYING":
             demand_pins(self.loops, self._line.where)
@@ -208,7 +208,7 @@ def demand_pins(loops: tuple[Loop, ...], where: str) -> None:
             "a sensor and an output on the board for every loop, as section [board] of a plant file names their pins"
         )
         remedy = "fly with the host in the loop: the host sends angles, the board answers voltages"
-        raise BadInput("flight on the board's own encoders", where, f"the loops {names}", expected, remedy)
+        raise BadInput("flight on the board's own sensors", where, f"the loops {names}", expected, remedy)
 
 
 @dataclass(eq=False)

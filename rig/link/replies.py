@@ -36,7 +36,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class Telemetry:
-    """One control tick of a flight on the board's own encoders, in the order of the law's loops."""
+    """One control tick of a flight on the board's own sensors, in the order of the law's loops."""
 
     tick: int
     device_time_us: int

@@ -1,7 +1,7 @@
 """Watch a board or a log in the browser: angles, inputs, references, the link, and what the twin predicted one second before.
 
 --port emulated (the default) flies DIR/firmware.elf on the emulated board, a device such as /dev/ttyACM0 a real one, and a log LOG.csv is
-replayed. A board is in the loop of a simulated rig and its power stage stays off, unless --fly lets it fly on its own encoders.
+replayed. A board is in the loop of a simulated rig and its power stage stays off, unless --fly lets it fly on its own sensors.
 The page stays on this computer. Ctrl-C disarms and ends.
 """
 
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     options.table(parser)
     options.arithmetic(parser)
     parser.add_argument("--rig", type=Path, metavar="PLANT.toml", help="simulated rig; default: the plant itself")
-    parser.add_argument("--fly", action="store_true", help="fly on the board's own encoders: THE ROTORS TURN")
+    parser.add_argument("--fly", action="store_true", help="fly on the board's own sensors: THE ROTORS TURN")
     parser.add_argument("--record", type=Path, metavar="LOG.csv", help="leave the last flight there as a run log")
     parser.add_argument("--http-port", type=_tcp_port, default=0, metavar="N", help="of the page; default: a free one")
     options.out(parser)
