@@ -7,8 +7,9 @@ OUT ?= build
 # What is imported is compiled then, once; most of what is installed never is imported, and a suite is hundreds of processes.
 INSTALL := install --quiet --disable-pip-version-check --no-compile
 PIP := $(BIN)/python -m pip $(INSTALL)
-# What builds this project is there then: for an environment of its own pip would call itself twice more.
-EDITABLE := --no-build-isolation --editable
+# What builds this project is there then: for an environment of its own pip would call itself twice more. What it depends on comes
+# afterwards, each with a builder of its own where its makers give sources alone.
+EDITABLE := $(PIP) --no-build-isolation --no-deps --editable .
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help run test docs soak check lint types layers bench clean
@@ -57,17 +58,19 @@ $(VENV)/.tools:
 	touch $@
 
 $(VENV)/.run: pyproject.toml | $(VENV)/.tools
-	$(PIP) $(EDITABLE) .
+	$(EDITABLE)
+	$(PIP) twinlaw
 	touch $@
 
 $(VENV)/.test: pyproject.toml | $(VENV)/.tools
-	$(PIP) $(EDITABLE) '.[test]'
+	$(EDITABLE)
+	$(PIP) 'twinlaw[test]'
 	touch $(VENV)/.run $@
 
 $(VENV)/.soak: $(VENV)/.test
-	$(PIP) $(EDITABLE) '.[soak]'
+	$(PIP) 'twinlaw[soak]'
 	touch $@
 
 $(VENV)/.docs: $(VENV)/.run
-	$(PIP) $(EDITABLE) '.[docs]'
+	$(PIP) 'twinlaw[docs]'
 	touch $@
