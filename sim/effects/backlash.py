@@ -45,7 +45,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{entry.variable} follows its command through a play of the given width",
             story="The driver lets small changes pass by: its output moves only when the command has gone far enough.",
             source="hysteresis of a driver, a worn potentiometer",
-            prior=RARE if place.endswith("_input") else COMMON,  # set rare among several inputs
+            prior=RARE,
             on_input=lambda values, column=column: InputPlay(column, values["width"]),
             smooth=False,
         )

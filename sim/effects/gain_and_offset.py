@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.prior import COMMON, RARE, Prior
+from sim.prior import RARE, Prior
 
 OWN = Prior(-3.0, "rigs of this kind are known for it, but it is a parameter of the plant under another name")
 
@@ -41,7 +41,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> {u} + offset",
             story="The driver's zero is off: the rotor is pushed a little even when it is told nothing.",
             source="a driver's calibration",
-            prior=RARE if place.endswith("_input") else COMMON,  # set rare among several inputs
+            prior=RARE,
             applied=lambda offset, u=u: {u: u + offset},
             twins={f"{place}.deadzone": "while the input keeps its sign, both add or take away a constant"},
         )

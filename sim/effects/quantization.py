@@ -35,9 +35,9 @@ def effects(model: Model) -> Iterator[Effect]:
                     0.0,
                     tuple(s * size for s in INPUT_STEPS),
                     role=Role.STEP,
-                    rough=place.endswith("_input"),  # set among several inputs
+                    rough=True,
                 ),
-                EffectParameter("h", "1", 0.0, 0.3, 0.0, starts=HOLDS, refining=True, rough=place.endswith("_input")),
+                EffectParameter("h", "1", 0.0, 0.3, 0.0, starts=HOLDS, refining=True, rough=True),
             ),
             equation="q round(u/q), held within (1/2 + h) q",
             story="The driver knows only coarse steps of voltage.",
