@@ -20,6 +20,7 @@ DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, LAG_JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
 OUT_OF_REACH = 1e3  # references
+WITHOUT_SLOPE = (Role.JITTER, Role.BEGINNING)  # found otherwise, or known
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def free_numbers(case: Case, hypothesis: Hypothesis, shapes: bool = True) -> tup
     for name, log, values in _instances(case, hypothesis):
         effect = case.library.effects[name]
         for parameter in effect.parameters:
-            if effect.shown_in_readings or effect.is_noise or parameter.role is Role.JITTER:
+            if effect.shown_in_readings or effect.is_noise or parameter.role in WITHOUT_SLOPE:
                 continue
             if name in case.stated:
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))

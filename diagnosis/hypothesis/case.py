@@ -86,6 +86,11 @@ class Case:
         return np.asarray(self.library.bound.sd[self.free])
 
     @property
+    def begins_s(self) -> float:
+        """When the earliest of the logs begins, by its clock: what warms up does so from there."""
+        return min(float(flight.log.t_s[0]) for flight in self.flights)
+
+    @property
     def nonnegative(self) -> list[int]:
         """Places in p of uncertain coefficients that have a sign to keep."""
         signs = [spec.sign for spec in self.library.bound.model.parameters for _ in range(spec.count)]

@@ -97,8 +97,8 @@ INPUT_T: dict[str, Callable[[Any], float]] = {
     "tail_input.driver_asymmetry": lambda s: s.u_T * (s.r if s.u_T < 0 else 1.0),
     "tail_input.quantization": lambda s: s.q * floor(s.u_T / s.q + 0.5),
 }
-DRIVE_M = {"main_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
-DRIVE_T = {"tail_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
+DRIVE_M = {"main_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-(s.t - s.t_0) / s.T))}
+DRIVE_T = {"tail_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-(s.t - s.t_0) / s.T))}
 DRAG_T = {"tail_rotor.reverse_drag": lambda s: s.r if s.w_T < 0 else 1.0}
 RUB_M = {"main_rotor.dry_friction": lambda s: s.c * sgn(s.w_M)}
 RUB_T = {"tail_rotor.dry_friction": lambda s: s.c * sgn(s.w_T)}

@@ -80,8 +80,8 @@ VALUES: Mapping[str, Mapping[str, float]] = {
     "azimuth.lower_stop": {"a": 0.3},
     "main_rotor.imbalance": {"a": 2e-4},  # so little that the axis never turns back, and friction stays as it is
     "tail_rotor.imbalance": {"a": 2e-4},
-    "main_rotor.warmup": {"T": 8.0},
-    "tail_rotor.warmup": {"T": 8.0},
+    "main_rotor.warmup": {"T": 8.0, "t_0": -1.3},
+    "tail_rotor.warmup": {"T": 8.0, "t_0": -1.3},
     "azimuth.inertia_shape": {"J_0": 0.0005},
     "elevation.balance_weight": {"j": 0.6},
     "azimuth.tilt": {"Phi_0": 0.7, "e": 0.4},
