@@ -1,7 +1,7 @@
 """Whether a gap matters, and each effect of a name: some thousand rows make any small thing certain, and what changes no prediction is
 nothing to an engineer."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 
 import numpy as np
@@ -42,29 +42,47 @@ def consequence(
 def without_idle(
     case: Case, weighed: Weighed, tried: Sequence[FittedHypothesis]
 ) -> tuple[Weighed, tuple[Decision, ...]]:
-    """What was weighed, without effects that predict the logs no better: the probability of a name goes to the likeliest of all that were
-    `tried` with one effect less, as long as that predicts as well; and the rules."""
+    """What was weighed, without hypotheses one of whose effects predicts the logs no better than the likeliest of all that were `tried`
+    without it; and the rules.
+
+    What such an effect gains in nats it gains of the noise: it says nothing of what it stands beside, so those without it are compared by
+    their own evidence, the names together as probable as before.
+    """
     judged: dict[FittedHypothesis, Errors] = {}
-    shares, rules = dict(zip(weighed.fitted, weighed.probabilities, strict=True)), list[Decision]()
-    for entry in sorted(shares, key=lambda entry: -len(entry.effects)):
-        while entry in shares and shares[entry] >= decisions.LEAST_PREFERRED:
-            fewer = _one_less(entry, tried)
-            if fewer is None:
-                break
-            for one in (entry, fewer):
-                if one not in judged:
-                    judged[one] = _errors(case, one)
-            gain = score(judged[entry], judged[fewer]).gain
-            left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
-            idle = gain < decisions.MATTERS
-            outcome = f"{left} is left out" if idle else f"{left} matters"
-            rules.append(decided("each_matters", " + ".join(entry.effects), gain, decisions.MATTERS, outcome))
-            if not idle:
-                break
-            shares[fewer] = shares.get(fewer, 0.0) + shares.pop(entry)
-            entry = fewer
+    shares, whole = dict(zip(weighed.fitted, weighed.probabilities, strict=True)), sum(weighed.probabilities)
+    asked, rules = set[FittedHypothesis](), list[Decision]()
+    while (entry := _next(shares, asked)) is not None:
+        asked.add(entry)
+        fewer = _one_less(entry, tried)
+        if fewer is None:
+            continue
+        for one in (entry, fewer):
+            if one not in judged:
+                judged[one] = _errors(case, one)
+        gain = score(judged[entry], judged[fewer]).gain
+        left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
+        idle = gain < decisions.MATTERS
+        outcome = f"{left} is left out" if idle else f"{left} matters"
+        rules.append(decided("each_matters", " + ".join(entry.effects), gain, decisions.MATTERS, outcome))
+        if idle:
+            shares = _spread_over(shares, entry, fewer, whole)
     ranked = sorted(shares, key=lambda entry: -shares[entry])
     return replace(weighed, fitted=tuple(ranked), probabilities=tuple(shares[one] for one in ranked)), tuple(rules)
+
+
+def _next(shares: Mapping[FittedHypothesis, float], asked: Set[FittedHypothesis]) -> FittedHypothesis | None:
+    """The most probable that was not asked yet; None where all others hardly count."""
+    likely = (one for one in shares if one not in asked and shares[one] >= decisions.LEAST_PREFERRED)
+    return max(likely, key=lambda one: shares[one], default=None)
+
+
+def _spread_over(
+    shares: Mapping[FittedHypothesis, float], idle: FittedHypothesis, fewer: FittedHypothesis, whole: float
+) -> dict[FittedHypothesis, float]:
+    """The shares of all others, together as large as all were; `fewer` has it all where none of them counts."""
+    kept = {one: share for one, share in shares.items() if one is not idle}
+    rest = sum(kept.values())
+    return {one: whole / rest * share for one, share in kept.items()} if rest > 0.0 else {fewer: whole}
 
 
 def _one_less(entry: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> FittedHypothesis | None:

@@ -65,3 +65,13 @@ def test_an_effect_that_predicts_no_better_is_left_out_and_one_that_does_stays()
     )  # nothing else was tried with one effect less: the friction would be missed
     assert kept.fitted == weighed.fitted
     assert [one.outcome for one in rules] == ["arm.coulomb matters"]
+
+
+def test_what_is_left_is_compared_by_its_own_evidence() -> None:
+    # Truth: as above. What the idle scale gains of the noise is no share of the friction that it stood beside.
+    rub, idle = {"arm.coulomb": {"b": 4e-4}}, {"theta_sensor.scale": {"scale": 1.001}}
+    case = arm_case(arm_log({**rub, **idle}, seed=76))
+    both, alone, other = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle))
+    found, _ = without_idle(case, Weighed((both, other, alone), (0.6, 0.2, 0.1), 0.1, 0.0, 10.0), [alone, other, both])
+    assert [entry.effects for entry in found.fitted] == [("theta_sensor.scale",), ("arm.coulomb",)]
+    assert found.probabilities == pytest.approx((0.6, 0.3))
