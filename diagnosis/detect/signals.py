@@ -17,7 +17,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """What a flight went through, by instant: angles and speeds by axis, rotor speeds, inputs, relative inertia by axis, time, waves."""
+    """What a flight went through, by instant: angles and speeds by axis, rotor speeds, inputs, relative inertia by axis, time since the
+    logs begin, waves."""
 
     t: Array
     h: Array
@@ -41,7 +42,7 @@ def signals(linearisation: Linearisation, flight: int, waves: Mapping[str, tuple
 
     axes = {axis.name: axis for axis in model.axes if axis.position is not None}
     return Signals(
-        t=filter_input.t_s,
+        t=filter_input.t_s - linearisation.case.begins_s,
         h=np.append(np.diff(filter_input.t_s), 0.0),
         angle={name: value(axis.position) for name, axis in axes.items()},
         speed={name: value(axis.velocity) / model.places.axes[name].speed_size for name, axis in axes.items()},

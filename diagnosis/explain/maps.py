@@ -23,7 +23,7 @@ def removed_energy(before: Sequence[Array], after: Sequence[Array]) -> list[Arra
 def time_map(case: Case, energy: Sequence[Array]) -> tuple[Span, ...]:
     """Shares of equal spans of the logs' time, largest first; logs lie on one another."""
     end = max(flight.log.t_s[-1] for flight in case.flights)
-    edges = np.linspace(0.0, end, SPANS + 1)
+    edges = np.linspace(case.begins_s, end, SPANS + 1)
     where = np.concatenate([flight.log.t_s for flight in case.flights])
     shares = _shares(where, np.concatenate(energy), edges)
     rows = [
