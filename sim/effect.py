@@ -25,7 +25,7 @@ class Role(Enum):
     NUMBER = "nothing further"
     INSTANT = "when it happens, s from the log's beginning"
     DURATION = "how long it lasts, s"
-    BEGINNING = "when its clock is started, s: known, the beginning of the earliest log"
+    BEGINNING = "when it begins, s: known, the beginning of the earliest log that is run"
     RATE = "how fast a sine goes in time"
     WAVES = "how often a sine goes on the way"
     PHASE = "where a sine begins"

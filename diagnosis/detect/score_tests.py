@@ -66,10 +66,10 @@ def score_effects(
     return sorted(best.values(), key=lambda entry: -entry.gain)
 
 
-def shape_starts(effect: Effect, begins_s: float) -> list[dict[str, float]]:
-    """Values of an effect's shapes to start from, its sizes left out; `begins_s` where its clock is started."""
+def shape_starts(effect: Effect) -> list[dict[str, float]]:
+    """Values of an effect's shapes to start from, its sizes left out."""
     shapes = [parameter for parameter in effect.parameters if not parameter.is_size]
-    choices = [(begins_s,) if p.role is Role.BEGINNING else p.starts or (p.reference,) for p in shapes]
+    choices = [p.starts or (p.reference,) for p in shapes]
     return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][
         : decisions.MOST_STARTS
     ]
@@ -79,7 +79,7 @@ def _starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, floa
     """Values of an effect's shapes to start from; those of a sine are sought, and where none is likely there are none."""
     if effect.swings:
         return wave_starts(linearisation, effect)
-    return instants(linearisation, effect) or shape_starts(effect, linearisation.case.begins_s)
+    return instants(linearisation, effect) or shape_starts(effect)
 
 
 def _smooth(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
@@ -173,7 +173,7 @@ def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
         (effect, {**shapes, effect.size.symbol: value})
         for effect, values in zip(effects, sizes, strict=True)
         for value in values
-        for shapes in shape_starts(effect, case.begins_s)
+        for shapes in shape_starts(effect)
     ]
     return [
         entry for entry in thread_map(lambda start: _tried(case, linearisation, *start), starts) if entry is not None

@@ -86,7 +86,8 @@ def estimates(case: Case, found: FittedHypothesis) -> Mapping[str, Mapping[str, 
                 float(sd.get((name, symbol), 0.0)),
                 _unit(case, name, symbol),
             )
-            for symbol in case.library.effects[name].parameter
+            for symbol, parameter in case.library.effects[name].parameter.items()
+            if parameter.role is not Role.BEGINNING
         }
         for name in supposed
     }

@@ -87,7 +87,7 @@ class Case:
 
     @property
     def begins_s(self) -> float:
-        """When the earliest of the logs begins, by its clock: what warms up does so from there."""
+        """When the earliest of the logs begins, by its clock: what warms up does so from there, and forms in time count from there."""
         return min(float(flight.log.t_s[0]) for flight in self.flights)
 
     @property

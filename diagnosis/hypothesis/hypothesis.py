@@ -113,9 +113,12 @@ def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -
     p[[place for name, place in compiled.switches.items() if name in hypothesis.effects]] = 1.0
     for name, values in hypothesis.effects.items():
         if name in compiled.names:
-            for symbol, value in values.items():
-                late = library.effects[name].reads_late
-                p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if late else value
+            effect = library.effects[name]
+            known = {
+                parameter.symbol: case.begins_s for parameter in effect.parameters if parameter.role is Role.BEGINNING
+            }
+            for symbol, value in {**values, **known}.items():
+                p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if effect.reads_late else value
     for output in library.bound.model.outputs:
         noise = hypothesis.reading_noise.get(output)
         p[compiled.index[switch_of(output)]] = 0.0 if noise is None else 1.0

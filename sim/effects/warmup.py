@@ -1,6 +1,6 @@
 """A motor that weakens as it warms up.
 
-(1)  K -> K (1 - a (1 - exp(-(t - t_0) / T))),   t_0 where the motor is switched on: the log's clock may have been running before
+(1)  K -> K (1 - a (1 - exp(-(t - t_0) / T))),   t_0 where the run begins: its clock may have been running before
 """
 
 from collections.abc import Iterator

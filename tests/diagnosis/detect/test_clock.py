@@ -37,7 +37,6 @@ def test_a_clock_that_began_earlier_changes_no_score() -> None:
     log = arm_log(WARM)
     here, there = linear(log), linear(replace(log, t_s=log.t_s + BEGAN_S))
     one, other = scores(here), scores(there)
-    assert other["rotor.warmup"].values["t_0"] == pytest.approx(BEGAN_S)
     assert one["rotor.warmup"].gain > 30.0
     shown = [name for name, entry in one.items() if entry.gain > 0.0]
     assert [other[name].gain for name in shown] == pytest.approx([one[name].gain for name in shown], abs=5.0)
