@@ -310,10 +310,13 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
 
 
 def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
-    """Whether anything that was found changes what a model predicts, of the logs or surely of those that were not fitted. Parameters are
-    not asked: the plain plant has them moved as far as it may."""
+    """Whether anything that was found changes what a model predicts, of the logs or surely of those that were not fitted.
+
+    It is asked against the plain plant with its parameters moved; one that had to move them further than its file allows is no plant that
+    is as stated, however well it then predicts.
+    """
     weighed = judged.weighed
-    if weighed.retune > max(weighed.probabilities, default=0.0):
+    if seen.detection.moved or weighed.retune > max(weighed.probabilities, default=0.0):
         return seen, True
     tried, shares = list(weighed.fitted), list(weighed.probabilities)
     if judged.beyond is not None:

@@ -37,11 +37,13 @@ class FormScores:
 
 @dataclass(frozen=True, eq=False)
 class Detection:
-    """`p` the chance of so large a gap without one, the law it comes from, the largest gain, and what each form gains."""
+    """`p` the chance of so large a gap without one, the law it comes from, the largest gain, and what each form gains; `moved` says
+    whether the plant follows its logs only by parameters that are hardly those of its file."""
 
     p: float
     tail: Tail
     largest: float
+    moved: bool
     by_form: FormScores
     decisions: tuple[Decision, ...] = ()
 
@@ -74,8 +76,9 @@ def detect(
         "parameter_furthest": moved_tail(case, linearisation.fit),
     }
     p = min(1.0, len(chances) * min(chances.values()))
+    moved = min(chances["parameters_together"], chances["parameter_furthest"]) <= decisions.ALARM / len(chances)
     rules = tuple(_rule(name, chance, len(chances)) for name, chance in chances.items())
-    return Detection(p, tail, largest, FormScores(tuple(found), by_form, null_forms.mean(axis=1)), rules)
+    return Detection(p, tail, largest, moved, FormScores(tuple(found), by_form, null_forms.mean(axis=1)), rules)
 
 
 def _allowed(case: Case) -> float:

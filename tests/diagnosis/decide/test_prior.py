@@ -108,7 +108,7 @@ def test_friction_one_way_only_is_rarer_where_none_is_stated() -> None:
 def seen(largest: float, p: float = 1e-4) -> Seen:
     """A gap of that many nats that chance makes with a probability of p."""
     empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
-    detection = Detection(p, Tail(5.0, 1.0), largest, FormScores((), empty, np.zeros(0)))
+    detection = Detection(p, Tail(5.0, 1.0), largest, False, FormScores((), empty, np.zeros(0)))
     return Seen(object(), None, fitted(), object(), (), None, detection)  # type: ignore[arg-type]
 
 
