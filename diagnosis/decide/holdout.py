@@ -24,6 +24,7 @@ from records.reasons import Decision, Note
 from records.table import ControllerTable
 
 NATS = "nats a reading"
+MOST_NATS = 500.0  # more than that no number holds once it is a factor
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +166,8 @@ def overruled(holdout: Holdout, weighed: Weighed, gained: float, left: float) ->
 
 def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:
     """The names in the order of what both the training logs and these say: what one predicts better counts in nats for each second, as
-    readings within one share their errors, on the scale on which the hypotheses are compared."""
+    readings within one share their errors. Nothing was fitted to these, so that no form a little off the truth gains there: their nats
+    need no scale (weighing.py)."""
     chosen = [
         index for index, p in enumerate(weighed.probabilities[: decisions.PREFERRED]) if p >= decisions.LEAST_PREFERRED
     ]
@@ -174,9 +176,8 @@ def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decisi
     told = [holdout.score(weighed.fitted[index].fit.hypothesis) for index in chosen]
     seconds = sum(len(windows(flight.log.t_s)) for flight in holdout.case.flights)
     factors = np.ones(len(weighed.fitted))
-    factors[chosen] = np.exp(
-        seconds / weighed.scale * np.clip([entry.gain - told[0].gain for entry in told], -50.0, 50.0)
-    )
+    nats = np.array([seconds * (entry.gain - told[0].gain) for entry in told])
+    factors[chosen] = np.exp(np.clip(nats, -MOST_NATS, MOST_NATS))
     rules = tuple(
         held_against(
             "hold_out_prefers",

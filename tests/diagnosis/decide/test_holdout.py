@@ -158,7 +158,7 @@ def test_steps_that_the_readings_lie_on_are_likelier_by_their_log() -> None:
 def test_of_two_names_the_one_that_predicts_better_gains() -> None:
     _, holdout = judged(arm_log(RUB, seed=38))
     wrong = supposing({"arm.quadratic_drag": {"c": 1e-6}})
-    weighed = Weighed((wrong, rubbing()), (0.5, 0.4), 0.1, 0.0, 10.0)
+    weighed = Weighed((wrong, rubbing()), (0.5, 0.4), 0.1, 0.0, 1000.0)  # the scale of what was fitted has no say
     found, _ = preferred(holdout, weighed)
     assert found.fitted[0].effects == tuple(RUB)
     assert sum(found.probabilities) == pytest.approx(0.9)
