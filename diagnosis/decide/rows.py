@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.wiring import fitted_or_none, is_strained
+from diagnosis.detect.linearisation import linearised
+from diagnosis.detect.score_tests import score_effects
 from diagnosis.filter.filter_input import READINGS, FilterInput, beginning
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import gain_over, settled
@@ -66,7 +68,7 @@ def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LAT
     """What is to be known of the rows in which columns stand: that some may be others, or that these logs do not tell.
 
     Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own,
-    and by more than ROWS_REFUSED better.
+    and by more than ROWS_REFUSED better; but where an effect promises more than that, the logs are those of a rig that has it.
     `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are.
     """
     short = case.with_flights([_begun(flight) for flight in case.flights])
@@ -76,7 +78,8 @@ def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LAT
     found, commands = misplaced(_Asked(short, usual))
     if found is None:
         return _unseen(commands)
-    if not (found.follows and found.slip.way in ways and found.gain > decisions.ROWS_REFUSED):
+    refused = found.follows and found.slip.way in ways and found.gain > decisions.ROWS_REFUSED
+    if not refused or most_by_an_effect(short, usual) > found.gain:
         return (_note(case, found),)
     remedy = ", or ".join(_move(case, slip) for slip in (found.slip, *found.alike))
     if found.slip.way == EARLY:
@@ -88,6 +91,12 @@ def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LAT
         expected="columns in the rows of their time",
         remedy=remedy,
     )
+
+
+def most_by_an_effect(case: Case, usual: Fit) -> float:
+    """What the best effect gains beside the plant's fit, in nats, as a score test promises it."""
+    tests = score_effects(case, linearised(case, usual), case.library.candidates)
+    return max((entry.gain for entry in tests), default=0.0)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.decide.rows import EARLY, LATE, Misplaced, demand_rows
+from diagnosis import decisions
+from diagnosis.decide.rows import EARLY, LATE, Misplaced, demand_rows, most_by_an_effect
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
@@ -109,3 +110,10 @@ def test_a_plant_that_lacks_something_is_not_taken_for_commands_logged_late(
 
 def test_an_arm_that_lacks_its_friction_is_not_taken_for_commands_logged_late() -> None:
     assert told(effect_library(arm()), arm_log(RUB, seed=32, seconds=SECONDS)) == []
+
+
+@pytest.mark.parametrize(("effects", "promised"), [({}, False), ({"theta_sensor.backlash": {"width": 0.05}}, True)])
+def test_an_effect_that_promises_more_than_a_move_of_columns_is_seen(effects, promised: bool) -> None:
+    # Truth: a play of 3 degrees, which one column a row late could follow only in part; and a rig that lacks nothing.
+    case = make_case(effect_library(arm()), [arm_log(effects, seed=7)])
+    assert (most_by_an_effect(case, plain_fit(case)) > 2.0 * decisions.ROWS_REFUSED) is promised
