@@ -1,5 +1,6 @@
 """Units as text: enough to tell that "N m s^2" is "kg m^2" and that "kg m" is not."""
 
+import math
 import re
 from collections.abc import Mapping
 
@@ -65,6 +66,13 @@ def unit_suffix(name: str) -> str:
 def unit_of(name: str) -> str:
     """The unit that a column's name ends in, as a person writes it; empty where it states none."""
     return unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s").replace("Nm", "N m")
+
+
+def said(name: str, value: float) -> str:
+    """A value of this column as a person reads it: an angle in degrees, anything else in its unit."""
+    if unit_suffix(name) == "rad":
+        return f"{math.degrees(value):.1f} deg"
+    return f"{value:.4g} {unit_of(name)}".rstrip()
 
 
 def label(name: str) -> str:
