@@ -54,7 +54,7 @@ def demand_in_reach(loop: Loop, low_rad: float, high_rad: float, what: str, wher
     step_rad = loop.analogue.step_rad
     least_rad, most_rad = (rail * step_rad for rail in loop.analogue.rails_counts)
     if low_rad <= least_rad or high_rad >= most_rad:
-        expected = f"values between {least_rad:.6g} and {most_rad:.6g} {unit_of(loop.output)}, the ends of the sensor on {loop.analogue.pin}"
+        expected = f"from {least_rad:.6g} to {most_rad:.6g} {unit_of(loop.output)}, the ends of the sensor on {loop.analogue.pin}"
         remedy = "narrow the range, or give the sensor more of a scale: on its ends it reads as a torn wire does"
         raise BadInput(what, where, f"{low_rad:g} .. {high_rad:g} {unit_of(loop.output)}", expected, remedy)
 
