@@ -69,7 +69,10 @@ class Twin(Protocol):
 def self_test(table: FlownTable, twin: Twin) -> SelfTest:
     """The self-test of `table`, its expected results computed by the twin of the arithmetic in question."""
     twin.reset(*[0.0] * len(table.loops))
-    spans, moves = [_span(axis) for axis in table.axes], [_move(loop, axis) for loop, axis in zip(table.loops, table.axes, strict=True)]
+    spans, moves = (
+        [_span(axis) for axis in table.axes],
+        [_move(loop, axis) for loop, axis in zip(table.loops, table.axes, strict=True)],
+    )
     outputs = [twin.step(*given) for given in _sequence(twin, spans, moves)]
     ends = zip(*([twin.voltage_word(u_V) for u_V in outputs[step]] for step in (0, -1)), strict=True)
     return SelfTest(
