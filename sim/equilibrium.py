@@ -105,7 +105,7 @@ def _check_stops(bound: BoundPlant, axis: Axis, position: float) -> None:
             f"{axis.name} {'angle' if unit_suffix(str(axis.position)) == 'rad' else 'position'}",
             f"equilibrium of plant {bound.plant.name!r}",
             _told(axis, position),
-            f"{_told(axis, lower)} to {_told(axis, upper)}, the stops",
+            f"{_told(axis, lower).split()[0]} to {_told(axis, upper)}, the stops",
             "choose a position between the stops",
         )
 

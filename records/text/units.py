@@ -75,6 +75,11 @@ def said(name: str, value: float) -> str:
     return f"{value:.4g} {unit_of(name)}".rstrip()
 
 
+def shown(name: str) -> tuple[str, float]:
+    """The unit in which a person reads a column, degrees for an angle, and what one of its own is in that."""
+    return ("deg", math.degrees(1.0)) if unit_suffix(name) == "rad" else (unit_of(name) or "1", 1.0)
+
+
 def label(name: str) -> str:
     """A column's name as an axis shows it: "a_y [m/s^2]" of a_y_m_s2; one without a unit stays as it is."""
     suffix = unit_suffix(name)

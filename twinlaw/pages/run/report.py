@@ -9,7 +9,7 @@ from design.report import DesignReport
 from design.trade_off import TradePoint
 from records.log import RunLog
 from records.quality import Colour, flag
-from records.text.units import label, unit_of, unit_suffix
+from records.text.units import label, shown, unit_of
 from records.verification import Verification
 from sim.columns import reference_name
 from sim.tracking import Tracking
@@ -68,10 +68,10 @@ def flight_plot(log: RunLog) -> str:
     inputs = [(_told(name), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
     panels = [
         Panel(
-            f"{name} [{_shown(output)[0]}]",
+            f"{name} [{shown(output)[0]}]",
             (
-                Curve(log.t_s, _shown(output)[1] * log.column(output), "measured", BLUE),
-                Curve(log.t_s, _shown(output)[1] * log.column(reference), "reference", ORANGE, "--"),
+                Curve(log.t_s, shown(output)[1] * log.column(output), "measured", BLUE),
+                Curve(log.t_s, shown(output)[1] * log.column(reference), "reference", ORANGE, "--"),
             ),
         )
         for name, output, reference in angles
@@ -86,11 +86,6 @@ def flight_plot(log: RunLog) -> str:
 def _told(column: str) -> str:
     """The column's name for a reader; the helicopter's by what it is of."""
     return _NAMES.get(column, label(column).partition(" [")[0])
-
-
-def _shown(column: str) -> tuple[str, float]:
-    """The unit in which a person reads a column, and what one of its own is in it."""
-    return ("deg", 180.0 / np.pi) if unit_suffix(column) == "rad" else (unit_of(column) or "1", 1.0)
 
 
 def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
