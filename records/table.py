@@ -284,7 +284,7 @@ def _loop(entry: Any, where: str) -> Loop:
     section = checks.table(entry, where)
     checks.keys(section, where, _LOOP_NAMES, ("pins",))
     named = {name: checks.text(section[name], f"{where}.{name}") for name in _LOOP_NAMES}
-    loop = Loop(**named)
+    loop = Loop(named["axis"], named["output"], named["input"], named["motor"])
     if "pins" in section:
         loop = replace(loop, pins=_pins(section["pins"], f"{where}.pins", loop))
     for name, value in named.items():
