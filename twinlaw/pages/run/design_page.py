@@ -126,7 +126,7 @@ def _which(axis: AxisReport) -> list[tuple[str, int]]:
 
 def _coefficient(report: DesignReport, axis: AxisReport, of: str, place: int) -> Panel:
     fine = np.linspace(report.points_rad[0], report.points_rad[-1], FINE)
-    loop, factor = report.loop(axis.axis), shown(report.scheduled_by)[1]
+    loop = report.loop(axis.axis)
     volt, per = unit_of(loop.input) or "1", unit_of(loop.output) or "1"
     if of == "u_ff":
         designed, fitted, label = axis.operating_V, axis.feedforward_V, f"u_ff [{volt}]"
