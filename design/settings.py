@@ -43,7 +43,7 @@ from typing import Any
 from design.pins import demand_in_reach
 from design.pole_placement import FREE_DEGREES
 from design.schedule import Degrees
-from design.structure import loops_of, stops
+from design.structure import loops_of, measured_axis, stops
 from records.errors import BadInput
 from records.loops import LOOPS, Loop
 from records.plant import PLANTS, Plant, load_plant
@@ -239,6 +239,9 @@ def _scheduling(section: Mapping[str, Any], loops: tuple[Loop, ...], where: str)
 
 
 def _schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, where: str) -> Schedule:
+    if measured_axis(bound.model, loop) is None:
+        expected = "an output that is the position of an axis: only there can the plant be put to rest at a value of it"
+        raise BadInput("schedule", f"{where}.schedule", loop.output, expected, "leave it out for no schedule")
     low_key, high_key = _range_keys(loop)
     stops_rad = stops(bound, loop)
     default = _within(stops_rad, _SHARE)

@@ -110,6 +110,15 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
     assert key in str(table)
 
 
+def test_a_schedule_by_what_is_no_position_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant = written("coil", tmp_path)
+    plant.write_text(
+        plant.read_text().replace("[design]\n", '[design]\nschedule = "i_A"\ni_min_A = -3.0\ni_max_A = 3.0\n')
+    )
+    assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 2
+    assert "the position of an axis" in capsys.readouterr().err
+
+
 def test_a_key_in_another_unit_is_refused_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plant = written("emps", tmp_path)
     plant.write_text(plant.read_text().replace("reference_min_m", "reference_min_rad"))
