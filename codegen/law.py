@@ -12,15 +12,16 @@ from codegen.fixed.context import fixed_context
 from codegen.fixed.twin import FixedTwin
 from codegen.law_equations import axis_state
 from codegen.law_frame import last_accepted, schedule_ranges, without_vanishing_powers
-from codegen.law_terms import UNITS, Names, array_name, coefficients
+from codegen.law_terms import Names, array_name, coefficient_unit, coefficients
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
 from codegen.self_test import SelfTest, self_test
 from codegen.twin import PWM_TICKS, Float32Twin
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.loops import Loop, full_scales_V
+from records.loops import Loop, full_scale_words, full_scales_V
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.text.units import unit_of
 
 ARITHMETIC_CODES = {"float32": 0, "fixed": 1}
 
@@ -51,7 +52,9 @@ class Axis:
 
     loop: Loop
     angle: str
+    angle_unit: str
     voltage: str
+    voltage_unit: str
     suffix: str
     numbers: Any
     filter: str
@@ -73,11 +76,13 @@ class Axis:
 
 @dataclass(frozen=True)
 class ScheduleNames:
-    """The scheduling angle as the template sees it: its axis, its symbol, the prefix of its limits, and these [rad]."""
+    """The scheduling angle as the template sees it: its axis, its symbol, the prefix of its limits and their unit, and these."""
 
     axis: str
     symbol: str
+    output: str
     angle: str
+    angle_unit: str
     min_rad: float
     max_rad: float
 
@@ -90,12 +95,14 @@ def demand_drivable(table: FlownTable) -> None:
         scale_V = loop.full_scale_V
         least_V = 0.0 if loop.pins.direction is None else -scale_V
         if not (least_V <= axis.u_min_V and axis.u_max_V <= scale_V and axis.u_safe_V == 0.0):
-            got = f"{axis.u_min_V:g} to {axis.u_max_V:g} V, {axis.u_safe_V:g} V at rest"
-            expected = f"{least_V:g} to {scale_V:g} V with 0 V among them: full scale of its PWM"
+            unit, own = unit_of(loop.input), loop.own
+            got = f"{axis.u_min_V:g} to {axis.u_max_V:g} {unit}, {axis.u_safe_V:g} {unit} at rest"
+            expected = f"{least_V:g} to {scale_V:g} {unit} with 0 {unit} among them: full scale of its PWM"
             remedy = (
-                "narrow u_min_V and u_max_V in its section of [design], or name a direction or full_scale_V in [board]"
+                f"narrow {own('u_min_V')} and {own('u_max_V')} in its section of [design], "
+                f"or name a direction or {own('full_scale_V')} in [board]"
             )
-            raise BadInput(f"voltages of {loop.input}", f"loop {loop.axis} on {loop.pins.pwm}", got, expected, remedy)
+            raise BadInput(f"values of {loop.input}", f"loop {loop.axis} on {loop.pins.pwm}", got, expected, remedy)
 
 
 def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[str, str]:
@@ -154,12 +161,21 @@ def shared_context(table: FlownTable, arithmetic: str) -> dict[str, Any]:
         "plant": table.plant,
         "sample_period_us": round(table.sample_period_s * 1e6),
         "pwm_ticks": PWM_TICKS,
-        "full_scale_note": " and ".join(f"{scale_V} V" for scale_V in full_scales_V(table.loops)),
+        "full_scale_note": " and ".join(full_scale_words(table.loops)),
         "duty_names": _duty_names(full_scales_V(table.loops)),
         "loops": table.loops,
+        "units": _units(table.loops),
         "whose": {1: f"the {table.loops[0].axis}", 2: "both axes"}.get(len(table.loops), "all axes"),
         "schedule": _schedule_names(table),
         "last_accepted_fields": last_accepted(table.loops),
+    }
+
+
+def _units(loops: tuple[Loop, ...]) -> dict[str, str]:
+    """The units of all outputs and of all inputs, as comments say them."""
+    columns = {"output": [loop.output for loop in loops], "input": [loop.input for loop in loops]}
+    return {
+        what: " and ".join(dict.fromkeys(unit_of(name) or "1" for name in names)) for what, names in columns.items()
     }
 
 
@@ -173,7 +189,15 @@ def _schedule_names(table: FlownTable) -> ScheduleNames | None:
     if schedule is None:
         return None
     loop = table.loops[table.index(schedule.axis)]
-    return ScheduleNames(loop.axis, loop.symbol, Names(loop).angle, schedule.min_rad, schedule.max_rad)
+    return ScheduleNames(
+        loop.axis,
+        loop.symbol,
+        loop.output,
+        Names(loop).angle,
+        Names(loop).angle_unit,
+        schedule.min_rad,
+        schedule.max_rad,
+    )
 
 
 def test_context(table: FlownTable, test: SelfTest) -> dict[str, Any]:
@@ -195,8 +219,8 @@ def frame_context(axes: Sequence[Axis], axis_state_fields: Sequence[str]) -> dic
 
 def _float32_context(table: ControllerTable) -> dict[str, Any]:
     count = operation_count(table)  # refuses an unusable table before anything is made from it
-    arrays = tuple(array for loop in table.loops for array in _arrays(table, loop.axis))
-    axes = tuple(frame_axis(table, loop, tuple(_terms(loop.axis, table.axis(loop.axis)))) for loop in table.loops)
+    arrays = tuple(array for loop in table.loops for array in _arrays(table, loop))
+    axes = tuple(frame_axis(table, loop, tuple(_terms(loop, table.axis(loop.axis)))) for loop in table.loops)
     return {
         **frame_context(axes, tuple(axis_state(table.order).__dataclass_fields__)),
         "axis_state_note": "; the index is the power of delta = 1 - z^-1",
@@ -226,13 +250,15 @@ def frame_axis(table: FlownTable, loop: Loop, terms: tuple[Term, ...] = ()) -> A
     return Axis(
         loop=loop,
         angle=names.angle,
+        angle_unit=names.angle_unit,
         voltage=names.voltage,
+        voltage_unit=names.voltage_unit,
         suffix=names.suffix,
         numbers=axis,
         filter="take_reference" if time_constant_s == 0.0 else "prefilter",
         prefilter_gain=axis.prefilter_gain(table.sample_period_s),
         prefilter_time_constant_s=time_constant_s,
-        feedforward=_value(array_name(loop.axis, "u_ff_V"), axis.feedforward_V, region_text(table)),
+        feedforward=_value(array_name(loop, "u_ff_V"), axis.feedforward_V, region_text(table)),
         terms=terms,
     )
 
@@ -242,22 +268,25 @@ def region_text(table: FlownTable) -> str:
     return "0.0f" if table.schedule is None else f"self->{table.schedule.axis}.reference_2_rad"
 
 
-def _terms(name: str, law: AxisLaw) -> list[Term]:
+def _terms(loop: Loop, law: AxisLaw) -> list[Term]:
     """The terms of the move in their order of summation."""
     terms = []
     for entry in coefficients(law):
         if without_vanishing_powers(entry.polynomial):
-            value = _value(array_name(name, entry.name), entry.polynomial, "schedule_rad")
+            value = _value(array_name(loop, entry.name), entry.polynomial, "schedule_rad")
             holder = "e" if entry.letter == "q" else "self"
             terms.append(Term("-" if entry.sign < 0 else "+", entry.name, value, f"{holder}->{entry.factor}"))
     return terms
 
 
-def _arrays(table: ControllerTable, name: str) -> list[Array]:
-    law = table.axis(name)
+def _arrays(table: ControllerTable, loop: Loop) -> list[Array]:
+    law = table.axis(loop.axis)
     over_rad, reference_rad = schedule_ranges(table)
-    named = [(array_name(name, entry.name), entry.polynomial, entry.unit, over_rad) for entry in coefficients(law)]
-    named.append((array_name(name, "u_ff_V"), law.feedforward_V, UNITS["u_ff"], reference_rad))
+    named = [
+        (array_name(loop, entry.name), entry.polynomial, coefficient_unit(loop, entry.letter), over_rad)
+        for entry in coefficients(law)
+    ]
+    named.append((array_name(loop, "u_ff_V"), law.feedforward_V, coefficient_unit(loop, "u_ff"), reference_rad))
     return [
         Array(array, without_vanishing_powers(polynomial), unit, _range_text(polynomial, over_rad))
         for array, polynomial, unit, over_rad in named

@@ -1,6 +1,5 @@
 """The numbers of the law, taken from a controller table into any arithmetic."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
@@ -13,14 +12,14 @@ from codegen.law_frame import (
     range_numbers,
     without_vanishing_powers,
 )
+from codegen.scales import widest_error
 from records.errors import BadInput
+from records.loops import Loop
 from records.table import PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.text.units import unit_of
 
 N = TypeVar("N")
 M = TypeVar("M")
-
-# No shaft turns further than this against its reference: the widest error that the check of PLAUSIBLE_V assumes.
-WIDEST_ERROR_RAD = 2.0 * math.pi
 
 
 @dataclass(frozen=True)
@@ -73,10 +72,11 @@ def _refuse_unusable(table: ControllerTable) -> None:
             "choose another sample period and design the table again",
         )
     for loop, axis in zip(table.loops, table.axes, strict=True):
-        _refuse_unusable_axis(table, loop.axis, axis)
+        _refuse_unusable_axis(table, loop, axis)
 
 
-def _refuse_unusable_axis(table: ControllerTable, name: str, axis: AxisLaw) -> None:
+def _refuse_unusable_axis(table: ControllerTable, loop: Loop, axis: AxisLaw) -> None:
+    name = loop.axis
     polynomials = (*axis.q_V_rad, *axis.p, axis.feedforward_V)
     if table.schedule is None and any(len(without_vanishing_powers(row)) > 1 for row in polynomials):
         raise _unusable(name, "coefficients that vary without a schedule", "constants, or a scheduling angle")
@@ -86,12 +86,13 @@ def _refuse_unusable_axis(table: ControllerTable, name: str, axis: AxisLaw) -> N
         raise _unusable(name, "every q is zero", "an axis with feedback")
     # delta^i of an error within +-W reaches 2^i W; s and w stay within the span of the limits.
     span_V = axis.u_max_V - axis.u_min_V
-    feedback_V = sum(gain * 2.0**power * WIDEST_ERROR_RAD for power, gain in enumerate(gains))
+    feedback_V = sum(gain * 2.0**power * widest_error(loop, axis) for power, gain in enumerate(gains))
     recursion = sum(polynomial_bound(p, psi_rad) * 2.0**power for power, p in enumerate(axis.p))
     recursion_V = (recursion + 2.0 ** (axis.order - 1) * sum(map(abs, axis.a))) * span_V
     reached_V = feedback_V + recursion_V + span_V + polynomial_bound(axis.feedforward_V, widest_region_rad(table))
     if not reached_V < PLAUSIBLE_V:
-        raise _unusable(name, f"voltages of up to {reached_V:.3g} V", f"less than {PLAUSIBLE_V:g} V")
+        unit = unit_of(loop.input)
+        raise _unusable(name, f"commands of up to {reached_V:.3g} {unit}", f"less than {PLAUSIBLE_V:g} {unit}")
 
 
 def widest_region_rad(table: ControllerTable) -> float:

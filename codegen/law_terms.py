@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from records.loops import Loop
 from records.table import AxisLaw, Polynomial
+from records.text.units import unit_of
 
 # What each letter's coefficients multiply, by the power of delta: the error, s and w (records/table.py).
 FACTORS: Mapping[str, str] = {"q": "e_{}_rad", "p": "s_{}_V", "a": "w_{}_V"}
-UNITS: Mapping[str, str] = {"q": "V/rad", "p": "1", "a": "1", "u_ff": "V"}
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,6 @@ class Coefficient:
         """What it multiplies."""
         return FACTORS[self.letter].format(self.index)
 
-    @property
-    def unit(self) -> str:
-        """The unit of its value."""
-        return UNITS[self.letter]
-
 
 def coefficients(law: AxisLaw) -> tuple[Coefficient, ...]:
     """All coefficients of an axis' law, those that are 0 as well."""
@@ -49,9 +44,17 @@ def coefficients(law: AxisLaw) -> tuple[Coefficient, ...]:
     return tuple(Coefficient(letter, index, row) for letter, rows in groups for index, row in enumerate(rows))
 
 
-def array_name(axis: str, coefficient: str) -> str:
+def coefficient_unit(loop: Loop, letter: str) -> str:
+    """The unit of a coefficient's value, or of the feed-forward's, `u_ff`."""
+    output, input = unit_of(loop.output) or "1", unit_of(loop.input) or "1"
+    return {"q": f"{input}/({output})" if "/" in output else f"{input}/{output}", "u_ff": input}.get(letter, "1")
+
+
+def array_name(loop: Loop, coefficient: str) -> str:
     """The C array of a coefficient or of the feed-forward: elevation_q_0_V_rad, azimuth_p_1, elevation_u_ff_V."""
-    return f"{axis}_{coefficient}_V_rad" if coefficient.startswith("q_") else f"{axis}_{coefficient}"
+    return loop.own(
+        f"{loop.axis}_{coefficient}_V_rad" if coefficient.startswith("q_") else f"{loop.axis}_{coefficient}"
+    )
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,16 @@ class Names:
     def voltage(self) -> str:
         """U_M"""
         return self.loop.voltage.upper()
+
+    @property
+    def angle_unit(self) -> str:
+        """_RAD"""
+        return self.loop.own("_rad").upper()
+
+    @property
+    def voltage_unit(self) -> str:
+        """_V"""
+        return self.loop.own("_V").upper()
 
     @property
     def suffix(self) -> str:

@@ -6,6 +6,7 @@ from math import nan
 from typing import Protocol, SupportsFloat
 
 from records.law_table import AxisRange, FlownTable
+from records.loops import Loop
 
 STEPS = 320
 REFERENCE_EVERY = 64
@@ -14,7 +15,7 @@ SEED = 20
 MULTIPLIER = 1664525
 INCREMENT = 1013904223
 WIDEST_SPAN_COUNTS = 30000
-MOVE_RAD = 0.02
+MOVE_RAD, MOVE_SHARE = 0.02, 0.01
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,10 @@ class Twin(Protocol):
 def self_test(table: FlownTable, twin: Twin) -> SelfTest:
     """The self-test of `table`, its expected results computed by the twin of the arithmetic in question."""
     twin.reset(*[0.0] * len(table.loops))
-    spans, moves = [_span(axis) for axis in table.axes], [_move(axis) for axis in table.axes]
+    spans, moves = (
+        [_span(axis) for axis in table.axes],
+        [_move(loop, axis) for loop, axis in zip(table.loops, table.axes, strict=True)],
+    )
     outputs = [twin.step(*given) for given in _sequence(twin, spans, moves)]
     ends = zip(*([twin.voltage_word(u_V) for u_V in outputs[step]] for step in (0, -1)), strict=True)
     return SelfTest(
@@ -125,8 +129,10 @@ def _span(axis: AxisRange) -> int:
     return max(1, min(WIDEST_SPAN_COUNTS, int(widest_rad / axis.resolution_rad)))
 
 
-def _move(axis: AxisRange) -> int:
-    return max(1, min(_span(axis), int(MOVE_RAD / axis.resolution_rad)))
+def _move(loop: Loop, axis: AxisRange) -> int:
+    """Counts that one sample moves at most: of an angle MOVE_RAD, of anything else as small a share of its references' range."""
+    move = MOVE_RAD if loop.output_unit == "rad" else MOVE_SHARE * (axis.reference_max_rad - axis.reference_min_rad)
+    return max(1, min(_span(axis), int(move / axis.resolution_rad)))
 
 
 def _held(counts: int, limit: int) -> int:

@@ -12,7 +12,8 @@ from controllers.equation_controller import EquationController
 from controllers.table import CONTROLLERS
 from records.errors import BadInput
 from records.law_table import SCHEMA, AxisTable, FlownTable, LawTable
-from records.table import ControllerTable, demand_digest, parse_frame, parse_table
+from records.loops import Loop
+from records.table import ControllerTable, demand_digest, own_section, parse_frame, parse_table
 from records.text import checks
 from records.text.reading import read_json
 
@@ -66,18 +67,17 @@ def load_scheduled(path: Path, use: str) -> ControllerTable:
 
 
 def _parse(content: Mapping[str, Any], row: EquationController, where: str) -> LawTable[Any]:
-    frame = parse_frame(content, where, lambda entry, place: _axis(entry, row, place), ("controller",))
+    frame = parse_frame(content, where, lambda entry, place, loop: _axis(entry, row, place, loop), ("controller",))
     table: LawTable[Any] = LawTable(controller=row.name, **frame)
     demand_digest(table.digest, content, where)
     return table
 
 
-def _axis(entry: Any, row: EquationController, where: str) -> AxisTable[Any]:
-    section = checks.table(entry, where)
+def _axis(entry: Any, row: EquationController, where: str, loop: Loop) -> AxisTable[Any]:
     names = [field.name for field in fields(AxisTable)]
-    checks.keys(section, where, names)
-    scalars = {name: checks.number(section[name], f"{where}.{name}") for name in names[2:]}
-    feedforward_V = checks.numbers(section["feedforward_V"], f"{where}.feedforward_V")
+    section = own_section(entry, where, loop, names)
+    scalars = {name: checks.number(section[name], f"{where}.{loop.own(name)}") for name in names[2:]}
+    feedforward_V = checks.numbers(section["feedforward_V"], f"{where}.{loop.own('feedforward_V')}")
     return AxisTable(
         gains=_value(section["gains"], row.gains, f"{where}.gains"), feedforward_V=feedforward_V, **scalars
     )

@@ -21,12 +21,14 @@ from records.board import STM32G071, Board
 from records.errors import BadInput
 from records.loops import ADC_CODES, Analogue, Loop, Pins
 from records.text import checks
+from records.text.units import unit_of
 from sim.bind import BoundPlant
 
 # A plant file states a sensor's step, and its scale states it again: as many digits as one would print.
 _STEP_AGREES = 1e-4
 # What a driver behind a PWM gives at full duty [V]: below, its own drops are more; above, it is none of a board's.
 _DRIVERS_V = (0.1, 1000.0)
+_DRIVERS = (1e-6, 1e6)  # of a driver of another unit, an ampere or a newton metre, whose scale says nothing of its kind
 
 
 def with_pins(
@@ -52,18 +54,16 @@ def demand_in_reach(loop: Loop, low_rad: float, high_rad: float, what: str, wher
     step_rad = loop.analogue.step_rad
     least_rad, most_rad = (rail * step_rad for rail in loop.analogue.rails_counts)
     if low_rad <= least_rad or high_rad >= most_rad:
-        expected = (
-            f"angles between {least_rad:.6g} and {most_rad:.6g} rad, the ends of the sensor on {loop.analogue.pin}"
-        )
+        expected = f"from {least_rad:.6g} to {most_rad:.6g} {unit_of(loop.output)}, the ends of the sensor on {loop.analogue.pin}"
         remedy = "narrow the range, or give the sensor more of a scale: on its ends it reads as a torn wire does"
-        raise BadInput(what, where, f"{low_rad:g} .. {high_rad:g} rad", expected, remedy)
+        raise BadInput(what, where, f"{low_rad:g} .. {high_rad:g} {unit_of(loop.output)}", expected, remedy)
 
 
 def _pins_of(bound: BoundPlant, loop: Loop, section: Mapping[str, Any], where: str, board: Board) -> Pins:
     sensor_where, driver_where = f"{where}.{loop.output}", f"{where}.{loop.input}"
     measured = checks.table(section[loop.output], sensor_where)
     driven = checks.table(section[loop.input], driver_where)
-    checks.keys(driven, driver_where, ("pwm",), ("direction", "full_scale_V"))
+    checks.keys(driven, driver_where, ("pwm",), ("direction", loop.own("full_scale_V")))
     names = {
         name: checks.text(driven[name], f"{driver_where}.{name}") for name in ("pwm", "direction") if name in driven
     }
@@ -73,7 +73,7 @@ def _pins_of(bound: BoundPlant, loop: Loop, section: Mapping[str, Any], where: s
         known = ", or ".join(f'pwm "{one.pwm}" with direction "{one.direction}" or none' for one in board.motors)
         raise _unknown("output", driver_where, " and ".join(names.values()), known, board)
     if "analogue" in measured:
-        pins = replace(pins, analogue=_analogue(measured, sensor_where))
+        pins = replace(pins, analogue=_analogue(loop, measured, sensor_where))
         if board.channel_of(pins) is None:
             known = ", ".join(str(channel.pin) for channel in board.converter.channels)
             raise _unknown("analogue input", f"{sensor_where}.analogue", str(measured["analogue"]), known, board)
@@ -95,12 +95,19 @@ def _encoder(measured: Mapping[str, Any], where: str) -> tuple[str, str]:
     return names[0], names[1]
 
 
-def _analogue(measured: Mapping[str, Any], where: str) -> Analogue:
-    checks.keys(measured, where, ("analogue", "zero_scale_rad", "full_scale_rad"))
-    scales = [checks.number(measured[name], f"{where}.{name}") for name in ("zero_scale_rad", "full_scale_rad")]
+def _analogue(loop: Loop, measured: Mapping[str, Any], where: str) -> Analogue:
+    ends = (loop.own("zero_scale_rad"), loop.own("full_scale_rad"))
+    checks.keys(measured, where, ("analogue", *ends))
+    scales = [checks.number(measured[name], f"{where}.{name}") for name in ends]
     if scales[0] == scales[1]:
-        expected = "two angles: at 0 V, and at the converter's reference"
-        raise BadInput("scale", where, f"{scales[0]:g} rad at both ends", expected, "write what the sensor measures")
+        expected = "two values: at 0 V, and at the converter's reference"
+        raise BadInput(
+            "scale",
+            where,
+            f"{scales[0]:g} {unit_of(loop.output)} at both ends",
+            expected,
+            "write what the sensor measures",
+        )
     return Analogue(checks.text(measured["analogue"], f"{where}.analogue"), *scales)
 
 
@@ -109,21 +116,23 @@ def _demand_stated_step(bound: BoundPlant, loop: Loop, where: str) -> None:
     assert loop.analogue is not None
     stated_rad, step_rad = bound.plant.sensors[loop.output], loop.analogue.step_rad
     if not math.isclose(stated_rad, step_rad, rel_tol=_STEP_AGREES):
-        expected = f"{step_rad:.7g} rad, the scale's {ADC_CODES}th part"
-        remedy = f"write resolution_rad = {step_rad:.7g} in [sensors.{loop.output}], or mend the scale"
-        raise BadInput("step of the sensor", where, f"resolution_rad = {stated_rad:g}", expected, remedy)
+        key = loop.own("resolution_rad")
+        expected = f"{step_rad:.7g} {unit_of(loop.output)}, the scale's {ADC_CODES}th part"
+        remedy = f"write {key} = {step_rad:.7g} in [sensors.{loop.output}], or mend the scale"
+        raise BadInput("step of the sensor", where, f"{key} = {stated_rad:g}", expected, remedy)
 
 
 def _full_scale_V(bound: BoundPlant, loop: Loop, driven: Mapping[str, Any], where: str) -> float:
     symbol = next(symbol for symbol in bound.model.inputs if symbol.name == loop.input)
-    if "full_scale_V" in driven:
-        full_V, told = checks.positive(driven["full_scale_V"], f"{where}.full_scale_V"), "full_scale_V = "
+    key, unit = loop.own("full_scale_V"), unit_of(loop.input)
+    if key in driven:
+        full_V, told = checks.positive(driven[key], f"{where}.{key}"), f"{key} = "
     else:
         full_V, told = max(map(abs, bound.limits(symbol))), "none stated, and the input's own limits of "
-    low_V, high_V = _DRIVERS_V
+    low_V, high_V = _DRIVERS_V if unit == "V" else _DRIVERS
     if not low_V <= full_V <= high_V:
-        expected = f"{low_V:g} to {high_V:g} V at full duty"
-        raise BadInput("full scale", where, f"{told}{full_V:g} V", expected, "write it: full_scale_V = 12.0")
+        expected = f"{low_V:g} to {high_V:g} {unit} at full duty"
+        raise BadInput("full scale", where, f"{told}{full_V:g} {unit}", expected, f"write it: {key} = 12.0")
     return full_V
 
 

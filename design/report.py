@@ -20,6 +20,7 @@ from design.operating_points import DesignPoints, equilibria, grid, rest_V
 from design.rounding import FLOAT32, Rounding
 from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
 from design.settings import AxisSettings, DesignSettings
+from records.loops import LOOPS, Loop
 from records.table import ControllerTable, Polynomial
 from sim.bind import BoundPlant
 
@@ -103,6 +104,16 @@ class DesignReport:
     coupled_slowest_rad_s: Array
     coupled: SlowestPole
     coupling: tuple[Coupling, ...]
+    loops: tuple[Loop, ...] = LOOPS
+
+    @property
+    def scheduled_by(self) -> str:
+        """The column that the coefficients go by; the first loop's where they go by none."""
+        return next((loop.output for loop in self.loops if loop.axis == self.angle), self.loops[0].output)
+
+    def loop(self, axis: str) -> Loop:
+        """The loop of this axis."""
+        return next(loop for loop in self.loops if loop.axis == axis)
 
     def axis(self, name: str) -> AxisReport:
         """The entry of the axis called `name`."""
@@ -160,6 +171,7 @@ def make_report(
         np.max(poles.real, axis=1),
         slowest_of(psi_rad, poles),
         _coupling(survey, points),
+        settings.loops,
     )
 
 

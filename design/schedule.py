@@ -128,4 +128,6 @@ def fit_error(psi_rad: Array, designs: Sequence[DeltaForm], schedule: Schedule) 
 
 
 def _relative(wanted: Sequence[Array], found: Sequence[Array]) -> float:
-    return float(np.max(np.abs(np.array(found) - np.array(wanted))) / np.max(np.abs(np.array(wanted))))
+    largest = np.max(np.abs(np.array(wanted)))
+    missed = np.max(np.abs(np.array(found) - np.array(wanted)))
+    return float(missed / largest) if largest else 0.0  # of one state, P is 1 - z^-1 and nothing is fitted

@@ -11,8 +11,8 @@ recursion_degree = 0                 of the fits of p_i in Psi; without it, coef
 feedforward_degree = 2               of the fits of u_M0 and u_T0
 
 [design.elevation]                   and [design.azimuth]; another plant's loops, one to four, each by a name of its own
-output = "psi_rad"                   the measured angle; may be left out where the plant has one
-input = "u_M_V"                      the voltage that the loop commands; likewise
+output = "psi_rad"                   what is measured; may be left out where the plant has one
+input = "u_M_V"                      what the loop commands; likewise
 poles_rad_s = [-3.0, [-2.5, 1.5], [-2.5, -1.5], ...]     two for each state of the axis, real or [re, im]
 roll_off_pole_rad_s = -20.0          a seventh: the controller then falls towards the Nyquist frequency; 0 = none, as below 1 ms
 coefficient_degree = 0               of this axis' q_i; without it, that of [design]
@@ -23,6 +23,8 @@ reference_min_rad = -0.698           references outside are clamped
 reference_max_rad = 0.698
 u_min_V = 0.0                        narrower limits than the plant's: for a thrust that does not turn round with its voltage
 u_max_V = 10.0
+
+Keys in _rad and _V are so for an angle and a voltage; for another loop they end in its columns' units: reference_min_m, u_max_A.
 
 [design.margins]                     a table that falls below them anywhere in the range is refused
 max_sensitivity = 6.0
@@ -41,12 +43,13 @@ from typing import Any
 from design.pins import demand_in_reach
 from design.pole_placement import FREE_DEGREES
 from design.schedule import Degrees
-from design.structure import loops_of, stops
+from design.structure import loops_of, measured_axis, stops
 from records.errors import BadInput
 from records.loops import LOOPS, Loop
 from records.plant import PLANTS, Plant, load_plant
 from records.table import ORDERS, Schedule
 from records.text import checks
+from records.text.units import said, unit_of
 from sim.bind import BoundPlant
 
 DEFAULTS: Mapping[str, float] = {
@@ -178,7 +181,8 @@ class DesignSettings:
         """Where something is, in words: elevation at psi = -7.9 deg."""
         if self.schedule is None:
             return f"{what} at rest"
-        return f"{what} at {self.loop(self.schedule.axis).symbol} = {math.degrees(psi_rad):.1f} deg"
+        loop = self.loop(self.schedule.axis)
+        return f"{what} at {loop.symbol} = {said(loop.output, psi_rad)}"
 
 
 def read_settings(bound: BoundPlant) -> DesignSettings:
@@ -186,7 +190,7 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
     section, where = bound.plant.design, f"plant {bound.plant.name!r}: design"
     loops = loops_of(bound, section, where)
     scheduling = _scheduling(section, loops, where)
-    ranges = () if scheduling is None else (f"{scheduling.symbol}_min_rad", f"{scheduling.symbol}_max_rad")
+    ranges = () if scheduling is None else _range_keys(scheduling)
     names = [loop.axis for loop in loops]
     tuned = ("tuned",) if loops == LOOPS else ()  # the papers' controllers are the helicopter's
     checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "schedule", *ranges, *names, "margins", *tuned))
@@ -235,12 +239,19 @@ def _scheduling(section: Mapping[str, Any], loops: tuple[Loop, ...], where: str)
 
 
 def _schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, where: str) -> Schedule:
-    low_key, high_key = f"{loop.symbol}_min_rad", f"{loop.symbol}_max_rad"
+    if measured_axis(bound.model, loop) is None:
+        expected = "an output that is the position of an axis: only there can the plant be put to rest at a value of it"
+        raise BadInput("schedule", f"{where}.schedule", loop.output, expected, "leave it out for no schedule")
+    low_key, high_key = _range_keys(loop)
     stops_rad = stops(bound, loop)
     default = _within(stops_rad, _SHARE)
     low, high = (_range_end(section, key, default, end, where) for end, key in enumerate((low_key, high_key)))
-    _check_range(f"{where}: {low_key}, {high_key}", low, high, stops_rad, "operating range")
+    _check_range(f"{where}: {low_key}, {high_key}", low, high, stops_rad, "operating range", loop)
     return Schedule(loop.axis, low, high)
+
+
+def _range_keys(loop: Loop) -> tuple[str, str]:
+    return loop.own(f"{loop.symbol}_min_rad"), loop.own(f"{loop.symbol}_max_rad")
 
 
 def _range_end(
@@ -273,13 +284,14 @@ def _own_degree(value: Any, where: str) -> int | None:
     return None if value is None else _count({"coefficient_degree": value}, "coefficient_degree", where)
 
 
-def _check_range(where: str, low: float, high: float, stops_rad: tuple[float, float], what: str) -> None:
-    got = f"{low:g} .. {high:g} rad"
+def _check_range(where: str, low: float, high: float, stops_rad: tuple[float, float], what: str, loop: Loop) -> None:
+    unit = unit_of(loop.output)
+    got = f"{low:g} .. {high:g} {unit}"
     if low >= high:
         raise BadInput(what, where, f"{got}, which is empty", "min < max", "widen the range")
     if low < stops_rad[0] or high > stops_rad[1]:
         symmetric = stops_rad[0] == -stops_rad[1]
-        stops = f"+-{stops_rad[1]:g} rad" if symmetric else f"{stops_rad[0]:g} and {stops_rad[1]:g} rad"
+        stops = f"+-{stops_rad[1]:g} {unit}" if symmetric else f"{stops_rad[0]:g} and {stops_rad[1]:g} {unit}"
         raise BadInput(what, where, got, f"a range within the hard stops at {stops}", "narrow the range")
 
 
@@ -288,7 +300,7 @@ def _axis(
 ) -> AxisSettings:
     axis, where = loop.axis, f"{design_where}.{loop.axis}"
     section = checks.table(design.get(axis, {}), where)
-    wished = tuple(name for name in AxisSettings.__dataclass_fields__ if name != "axis")
+    wished = tuple(loop.own(name) for name in AxisSettings.__dataclass_fields__ if name != "axis")
     of_model = _wishes_of_model(bound.plant, axis)
     checks.keys(section, where, () if "poles_rad_s" in of_model else ("poles_rad_s",), (*wished, "output", "input"))
     stops_rad = stops(bound, loop)
@@ -304,12 +316,10 @@ def _axis(
         raise BadInput(
             "time constant", f"{where}.prefilter_time_constant_s", repr(filter_s), "0 or more", "write 0 for no filter"
         )
-    low, high = (
-        _range_end(section, key, reference_rad, end, where)
-        for end, key in enumerate(("reference_min_rad", "reference_max_rad"))
-    )
-    _check_range(f"{where}: reference_min_rad, reference_max_rad", low, high, stops_rad, "reference range")
-    demand_in_reach(loop, low, high, "reference range", f"{where}: reference_min_rad, reference_max_rad")
+    ends = (loop.own("reference_min_rad"), loop.own("reference_max_rad"))
+    low, high = (_range_end(section, key, reference_rad, end, where) for end, key in enumerate(ends))
+    _check_range(f"{where}: {', '.join(ends)}", low, high, stops_rad, "reference range", loop)
+    demand_in_reach(loop, low, high, "reference range", f"{where}: {', '.join(ends)}")
     return AxisSettings(
         axis=axis,
         poles_rad_s=read_poles(_entry(section, "poles_rad_s", defaults), f"{where}.poles_rad_s"),
@@ -320,7 +330,11 @@ def _axis(
         observer_pole=_observer_pole(_entry(section, "observer_pole", defaults), f"{where}.observer_pole"),
         reference_min_rad=low,
         reference_max_rad=high,
-        **{name: checks.number(section[name], f"{where}.{name}") for name in ("u_min_V", "u_max_V") if name in section},
+        **{
+            name: checks.number(section[loop.own(name)], f"{where}.{loop.own(name)}")
+            for name in ("u_min_V", "u_max_V")
+            if loop.own(name) in section
+        },
     )
 
 

@@ -47,16 +47,7 @@ def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, An
         key: section.get(key, str(found[0]) if len(found) == 1 else "one of " + " or ".join(map(str, found)))
         for key, found in only.items()
     }
-    if columns["output"] in outputs and columns["input"] in inputs:
-        _demand_units(columns["output"], columns["input"], where)
     return {"axis": name, **columns, "motor": name}
-
-
-def _demand_units(output: str, input: str, where: str) -> None:
-    if not (output.endswith("_rad") and input.endswith("_V")):
-        expected = "an angle [rad] and a voltage [V]: theta_rad, u_V"
-        remedy = "choose such a loop; without [design] `simulate`, `identify` and `diagnose` take this plant"
-        raise BadInput("loop", where, f"{output} and {input}", expected, remedy)
 
 
 def _demand_column(what: str, name: str, known: list[str], where: str) -> None:
@@ -71,7 +62,7 @@ def measured_axis(model: Model, loop: Loop) -> Axis | None:
 
 
 def stops(bound: BoundPlant, loop: Loop) -> tuple[float, float]:
-    """The hard stops of the measured axis [rad], infinite where there are none."""
+    """The hard stops of the measured axis, infinite where there are none."""
     axis = measured_axis(bound.model, loop)
     low, high = (None, None) if axis is None else (axis.lower, axis.upper)
     return -math.inf if low is None else bound.number(low), math.inf if high is None else bound.number(high)

@@ -18,6 +18,7 @@ from records.errors import BadInput
 from records.loops import Loop
 from records.plant import plant_digest
 from records.table import AxisLaw, ControllerTable, short
+from records.text.units import unit_of
 from sim.added_effects import linear_part, without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
@@ -111,7 +112,7 @@ def frame_entries(
 
 
 def limits_V(bound: BoundPlant, loop: Loop, wishes: AxisSettings) -> tuple[float, float]:
-    """Least and largest voltage of the loop's input: the plant's, or narrower ones that are wished for.
+    """Least and largest value of the loop's input: the plant's, or narrower ones that are wished for.
 
     Raises BadInput where it has no limit, as then it has no anti-windup either, and for limits beyond the plant's.
     """
@@ -119,13 +120,13 @@ def limits_V(bound: BoundPlant, loop: Loop, wishes: AxisSettings) -> tuple[float
     least, most = bound.limits(variable)
     low = least if wishes.u_min_V is None else wishes.u_min_V
     high = most if wishes.u_max_V is None else wishes.u_max_V
-    where = f"plant {bound.plant.name!r}: {loop.input}"
+    where, unit = f"plant {bound.plant.name!r}: {loop.input}", unit_of(loop.input)
     if not (math.isfinite(low) and math.isfinite(high)):
-        remedy = "state them in the equations, or as u_min_V and u_max_V of the loop"
-        raise BadInput("input limits", where, f"{low:g} to {high:g} V", "two numbers", remedy)
+        remedy = f"state them in the equations, or as {loop.own('u_min_V')} and {loop.own('u_max_V')} of the loop"
+        raise BadInput("input limits", where, f"{low:g} to {high:g} {unit}", "two numbers", remedy)
     if not least <= low < high <= most:
         raise BadInput(
-            "input limits", where, f"{low:g} to {high:g} V", f"within {least:g} to {most:g} V", "narrow them"
+            "input limits", where, f"{low:g} to {high:g} {unit}", f"within {least:g} to {most:g} {unit}", "narrow them"
         )
     return low, high
 
@@ -174,7 +175,7 @@ def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> d
         },
         "b": [plain(design.transfer.b) for design in designs],
         "a": [plain(design.transfer.a) for design in designs],
-        "q_V_rad": [plain(delta.q) for delta in deltas],
+        settings.loop(axis).own("q_V_rad"): [plain(delta.q) for delta in deltas],
         "p": [plain(delta.p) for delta in deltas],
     }
 

@@ -1,6 +1,12 @@
-"""The loops that a law closes, by the names that plant, table, protocol and pages give to their parts: named here, derived elsewhere."""
+"""The loops that a law closes, by the names that plant, table, protocol and pages give to their parts: named here, derived elsewhere.
+
+A loop measures and commands in the SI units that its columns' names end in. Inside the program, and in what all loops of a C text share,
+`_rad` stands for the unit of a loop's output and `_V` for that of its input; where a name is seen outside, `Loop.own` gives it theirs.
+"""
 
 from dataclasses import dataclass
+
+from records.text.units import unit_of, unit_suffix
 
 MOST_LOOPS = 4
 FULL_SCALE_V = 10.0  # of a PWM that nothing else is said of: what the helicopter's drivers give at full duty
@@ -9,7 +15,7 @@ ADC_CODES = 4096  # 12 bits, as the converters of all boards have
 
 @dataclass(frozen=True)
 class Analogue:
-    """A sensor on the converter's input `pin`: what it measures [rad] where the converter reads 0 V, and where it reads its reference.
+    """A sensor on the converter's input `pin`: what it measures where the converter reads 0 V, and where it reads its reference.
 
     From there on it is a sensor of counts, as an encoder is: count = +-code + `origin_counts`, and its zero is on a whole count.
     """
@@ -25,7 +31,7 @@ class Analogue:
 
     @property
     def sign(self) -> int:
-        """-1 where the angle falls as the voltage rises."""
+        """-1 where what is measured falls as the voltage rises."""
         return 1 if self.full_scale_rad > self.zero_scale_rad else -1
 
     @property
@@ -70,9 +76,10 @@ class Pins:
 
 @dataclass(frozen=True)
 class Loop:
-    """One loop: its `axis`, the columns of the measured angle `output` [rad] and of the commanded `input` [V], the `motor` driven.
+    """One loop: its `axis`, the columns of what is measured, `output`, and of the commanded `input`, the `motor` driven.
 
-    Columns bear their units: output psi_rad, reference psi_ref_rad, input u_M_V. A loop without `pins` flies with the host in the loop.
+    Columns bear their units: output psi_rad, reference psi_ref_rad, input u_M_V.
+    A loop without `pins` flies with the host in the loop.
     """
 
     axis: str
@@ -82,23 +89,41 @@ class Loop:
     pins: Pins | None = None
 
     @property
+    def output_unit(self) -> str:
+        """The unit in the output's name: rad, m, rad_s."""
+        return unit_suffix(self.output)
+
+    @property
+    def input_unit(self) -> str:
+        """The unit in the input's name."""
+        return unit_suffix(self.input)
+
+    def own(self, name: str) -> str:
+        """A name that ends in _rad, _V or both in this loop's units: reference_min_rad is reference_min_m, q_V_rad q_A_m."""
+        output, input = (f"_{unit}" if unit else "" for unit in (self.output_unit, self.input_unit))
+        for ending, unit in (("_V_rad", input + output), ("_rad", output), ("_V", input)):
+            if name.endswith(ending):
+                return name.removesuffix(ending) + unit
+        return name
+
+    @property
     def symbol(self) -> str:
-        """The angle without its unit."""
-        return self.output.removesuffix("_rad")
+        """The output without its unit."""
+        return self.output.removesuffix(f"_{self.output_unit}")
 
     @property
     def voltage(self) -> str:
         """The input without its unit."""
-        return self.input.removesuffix("_V")
+        return self.input.removesuffix(f"_{self.input_unit}")
 
     @property
     def reference(self) -> str:
-        """What the angle is to be."""
-        return f"{self.symbol}_ref_rad"
+        """What the output is to be."""
+        return self.own(f"{self.symbol}_ref_rad")
 
     @property
     def counts(self) -> str:
-        """What the angle's encoder counts."""
+        """What the output's encoder counts."""
         return f"{self.symbol}_counts"
 
     @property
@@ -127,6 +152,11 @@ LOOPS = (
 def full_scales_V(loops: tuple[Loop, ...]) -> tuple[float, ...]:
     """Those of `loops`, each once."""
     return tuple(dict.fromkeys(loop.full_scale_V for loop in loops))
+
+
+def full_scale_words(loops: tuple[Loop, ...]) -> tuple[str, ...]:
+    """Those of `loops` with their units, each once."""
+    return tuple(dict.fromkeys(f"{loop.full_scale_V} {unit_of(loop.input)}" for loop in loops))
 
 
 def has_pins(loops: tuple[Loop, ...]) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from records.loops import LOOPS, Loop
+from records.text.units import unit_of
 from records.wire import I16, I32, U8, U16, U32, Choice, Constant, Enumeration, Field, Message, Protocol
 
 
@@ -109,12 +110,23 @@ class _LoopFields:
     counts: tuple[Field, ...]
 
 
+def _command(loop: Loop) -> str:
+    return "voltage" if loop.input_unit == "V" else "command"
+
+
 def _fields_of(loops: tuple[Loop, ...]) -> _LoopFields:
     return _LoopFields(
-        references=tuple(_number(loop.reference, "rad", f"{loop.axis} reference") for loop in loops),
-        angles=tuple(_number(loop.output, "rad", loop.axis) for loop in loops),
+        references=tuple(
+            _number(loop.reference, unit_of(loop.output) or "1", f"{loop.axis} reference") for loop in loops
+        ),
+        angles=tuple(_number(loop.output, unit_of(loop.output) or "1", loop.axis) for loop in loops),
         inputs=tuple(
-            _number(loop.input, "V", f"{loop.motor} motor voltage out of the law, after its limits") for loop in loops
+            _number(
+                loop.input,
+                unit_of(loop.input) or "1",
+                f"{loop.motor} motor {_command(loop)} out of the law, after its limits",
+            )
+            for loop in loops
         ),
         duties=tuple(
             Field(loop.duty, I16, "PWM ticks", f"signed duty written to the {loop.motor} motor's PWM") for loop in loops

@@ -99,13 +99,19 @@ STEADY_ERROR = Criterion(
     Limit(0.1, "deg", "one step of the encoder, 0.088 deg"),
     Limit(1.0, "deg", "seed 001 calls errors of 0.5 to 1 deg good"),
 )
+STEADY_SHARE = Criterion(
+    "steady error",
+    "largest mean error at rest of what is no angle, as a share of its largest step",
+    Limit(0.5, "%", "a quarter of what counts as settled"),
+    Limit(2.0, "%", "what the field calls settled"),
+)
 STEP_ERROR = Criterion(
     "integration",
     "error of one integration step a sample, over one step of the output's sensor",
     Limit(0.1, "", "a tenth of what the sensor can show"),
     Limit(1.0, "", "beyond it the sensor shows it"),
 )
-CRITERIA = (MISFIT, TRUTH, FREE_RUN, MARGINS, OVERSHOOT, STEADY_ERROR, STEP_ERROR)
+CRITERIA = (MISFIT, TRUTH, FREE_RUN, MARGINS, OVERSHOOT, STEADY_ERROR, STEADY_SHARE, STEP_ERROR)
 
 
 def missed_percent(left_rms: float, noise_rms: float, motion_rms: float) -> float:

@@ -20,7 +20,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -208,19 +208,27 @@ def content_of(table: Table[Any]) -> dict[str, Any]:
         "sample_period_s": table.sample_period_s,
         **told,
         **_range_entries(table),
-        **{loop.axis: asdict(axis) for loop, axis in zip(table.loops, table.axes, strict=True)},
+        **{loop.axis: _told_axis(loop, axis) for loop, axis in zip(table.loops, table.axes, strict=True)},
         "origin": table.origin,
     }
 
 
+def _told_axis(loop: Loop, axis: Any) -> dict[str, Any]:
+    return {loop.own(name): value for name, value in asdict(axis).items()}
+
+
 def _told_loop(loop: Loop) -> dict[str, Any]:
     """What there is of a loop."""
-    pins = {} if loop.pins is None else {"pins": _without_none(asdict(loop.pins))}
+    pins = {} if loop.pins is None else {"pins": _told_pins(loop, asdict(loop.pins))}
     return {**{name: getattr(loop, name) for name in _LOOP_NAMES}, **pins}
 
 
-def _without_none(section: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in section.items() if value is not None}
+def _told_pins(loop: Loop, section: dict[str, Any]) -> dict[str, Any]:
+    return {
+        loop.own(name): _told_pins(loop, value) if isinstance(value, dict) else value
+        for name, value in section.items()
+        if value is not None
+    }
 
 
 def text_of(schema: str, table: Table[Any]) -> str:
@@ -229,9 +237,9 @@ def text_of(schema: str, table: Table[Any]) -> str:
 
 
 def parse_frame(
-    content: Mapping[str, Any], where: str, axis: Callable[[Any, str], Any], own: tuple[str, ...] = ()
+    content: Mapping[str, Any], where: str, axis: Callable[[Any, str, Loop], Any], own: tuple[str, ...] = ()
 ) -> dict[str, Any]:
-    """The fields of Table from the content of a file, each axis made by `axis` from entry and place; raises BadInput.
+    """The fields of Table from the content of a file, each axis made by `axis` from entry, place and loop; raises BadInput.
 
     `own` are the keys that this controller's table has besides.
     """
@@ -245,7 +253,7 @@ def parse_frame(
         "plant": checks.text(content["plant"], f"{where}: plant"),
         "sample_period_s": checks.positive(content["sample_period_s"], f"{where}: sample_period_s"),
         "schedule": schedule,
-        "axes": tuple(axis(content[name], f"{where}: {name}") for name in names),
+        "axes": tuple(axis(content[loop.axis], f"{where}: {loop.axis}", loop) for loop in loops),
         "loops": loops,
         "origin": checks.table(content["origin"], f"{where}: origin"),
     }
@@ -259,11 +267,12 @@ def demand_digest(digest: str, content: Mapping[str, Any], where: str) -> None:
 
 
 def parse_loops(entries: Any, where: str) -> tuple[Loop, ...]:
-    """One to four loops of distinct names, angles [rad] and voltages [V]; raises BadInput."""
+    """One to four loops of distinct names; raises BadInput."""
     if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_LOOPS:
         raise BadInput("loops", where, repr(entries)[:60], f"a list of 1 to {MOST_LOOPS} loops", "name fewer loops")
     loops = tuple(_loop(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
     named = {name: [getattr(loop, name) for loop in loops] for name in _LOOP_NAMES}
+    named["symbol"] = [name for loop in loops for name in (loop.symbol, loop.voltage)]  # what C's names are made of
     named["pins"] = [name for loop in loops if loop.pins is not None for name in loop.pins.names]
     for what, names in named.items():
         if len(set(names)) < len(names):
@@ -275,7 +284,9 @@ def _loop(entry: Any, where: str) -> Loop:
     section = checks.table(entry, where)
     checks.keys(section, where, _LOOP_NAMES, ("pins",))
     named = {name: checks.text(section[name], f"{where}.{name}") for name in _LOOP_NAMES}
-    loop = Loop(**named, pins=_pins(section["pins"], f"{where}.pins") if "pins" in section else None)
+    loop = Loop(named["axis"], named["output"], named["input"], named["motor"])
+    if "pins" in section:
+        loop = replace(loop, pins=_pins(section["pins"], f"{where}.pins", loop))
     for name, value in named.items():
         if not _NAME.fullmatch(value) or (name == "axis" and value in _SHARED):
             raise BadInput(
@@ -285,20 +296,18 @@ def _loop(entry: Any, where: str) -> Loop:
         if value in _C_WORDS:
             got = f"{named[name]!r}, of which C is given {value!r}, a word of its own"
             raise BadInput("name", f"{where}.{name}", got, "letters, digits and _, as in C", "choose another name")
-    if not (loop.output.endswith("_rad") and loop.input.endswith("_V")):
-        expected = "an angle [rad] and a voltage [V]: theta_rad, u_V"
-        raise BadInput("loop", where, f"{loop.output} and {loop.input}", expected, "choose such a loop")
     return loop
 
 
-def _pins(entry: Any, where: str) -> Pins:
+def _pins(entry: Any, where: str, loop: Loop) -> Pins:
     section = checks.table(entry, where)
     sensor = "analogue" if "analogue" in section else "encoder"
-    checks.keys(section, where, (sensor, "pwm", "full_scale_V"), ("direction",))
+    scale = loop.own("full_scale_V")
+    checks.keys(section, where, (sensor, "pwm", scale), ("direction",))
     names = {name: checks.text(section[name], f"{where}.{name}") for name in ("pwm", "direction") if name in section}
-    full_scale_V = checks.positive(section["full_scale_V"], f"{where}.full_scale_V")
+    full_scale_V = checks.positive(section[scale], f"{where}.{scale}")
     if sensor == "analogue":
-        analogue = _analogue(section[sensor], f"{where}.{sensor}")
+        analogue = _analogue(section[sensor], f"{where}.{sensor}", loop)
         return Pins(None, names["pwm"], names.get("direction"), analogue, full_scale_V)
     encoder = _encoder(section[sensor], f"{where}.{sensor}")
     return Pins(encoder, names["pwm"], names.get("direction"), None, full_scale_V)
@@ -311,13 +320,12 @@ def _encoder(entry: Any, where: str) -> tuple[str, str]:
     return first, second
 
 
-def _analogue(entry: Any, where: str) -> Analogue:
-    section = checks.table(entry, where)
-    checks.keys(section, where, tuple(Analogue.__dataclass_fields__))
+def _analogue(entry: Any, where: str, loop: Loop) -> Analogue:
+    section = own_section(entry, where, loop, Analogue.__dataclass_fields__)
     scales = ("zero_scale_rad", "full_scale_rad")
     return Analogue(
         checks.text(section["pin"], f"{where}.pin"),
-        *(checks.number(section[name], f"{where}.{name}") for name in scales),
+        *(checks.number(section[name], f"{where}.{loop.own(name)}") for name in scales),
     )
 
 
@@ -338,16 +346,22 @@ def _range_entries(table: Table[Any]) -> dict[str, float]:
 
 
 def _range_keys(loop: Loop) -> tuple[str, str]:
-    return f"{loop.symbol}_min_rad", f"{loop.symbol}_max_rad"
+    return loop.own(f"{loop.symbol}_min_rad"), loop.own(f"{loop.symbol}_max_rad")
 
 
-def _axis(entry: Any, where: str) -> AxisLaw:
-    section = checks.table(entry, where)
-    checks.keys(section, where, tuple(AxisLaw.__dataclass_fields__))
-    q = _polynomials(section["q_V_rad"], f"{where}.q_V_rad", ORDERS.start + 1, ORDERS.stop)
+def own_section(entry: Any, where: str, loop: Loop, names: Iterable[str]) -> dict[str, Any]:
+    """A section whose keys are in the loop's units, by the names inside; raises BadInput unless they are those of `names`."""
+    section, names = checks.table(entry, where), tuple(names)
+    checks.keys(section, where, map(loop.own, names))
+    return {name: section[loop.own(name)] for name in names}
+
+
+def _axis(entry: Any, where: str, loop: Loop) -> AxisLaw:
+    section = own_section(entry, where, loop, AxisLaw.__dataclass_fields__)
+    q = _polynomials(section["q_V_rad"], f"{where}.{loop.own('q_V_rad')}", ORDERS.start + 1, ORDERS.stop)
     order = len(q) - 1
     scalars = {
-        name: checks.number(section[name], f"{where}.{name}")
+        name: checks.number(section[name], f"{where}.{loop.own(name)}")
         for name in AxisLaw.__dataclass_fields__
         if name not in ("q_V_rad", "p", "a", "feedforward_V")
     }
@@ -355,7 +369,7 @@ def _axis(entry: Any, where: str) -> AxisLaw:
         q_V_rad=q,
         p=_polynomials(section["p"], f"{where}.p", order, order + 1),
         a=checks.numbers(section["a"], f"{where}.a", order),
-        feedforward_V=checks.numbers(section["feedforward_V"], f"{where}.feedforward_V"),
+        feedforward_V=checks.numbers(section["feedforward_V"], f"{where}.{loop.own('feedforward_V')}"),
         **scalars,
     )
 

@@ -59,20 +59,27 @@ def equality_table(equality: Equality) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class RoundingBound:
-    """A proved bound on what one step can differ from real arithmetic, per output (u_M) in V, and how it was proved."""
+    """A proved bound on what one step can differ from real arithmetic, per output (u_M), and how it was proved.
+
+    The bounds are in V but where `units` names another.
+    """
 
     volts: Mapping[str, float]
     method: str
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def told(self) -> str:
         """The bounds in words."""
-        return ", ".join(f"{name} within {1e3 * bound:.2f} mV" for name, bound in self.volts.items())
+        return ", ".join(f"{name} within {self._size(name, bound)}" for name, bound in self.volts.items())
+
+    def _size(self, name: str, bound: float) -> str:
+        return f"{bound:.2g} {self.units[name]}" if name in self.units else f"{1e3 * bound:.2f} mV"
 
     @property
     def entries(self) -> dict[str, Any]:
         """What verification.json states."""
-        return {**self.volts, "method": self.method}
+        return {**self.volts, "method": self.method, **({"units": dict(self.units)} if self.units else {})}
 
 
 @dataclass(frozen=True)

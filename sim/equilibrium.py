@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from records.text.units import unit_of, unit_suffix
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.kernel.reference import reference
@@ -101,11 +102,11 @@ def _check_stops(bound: BoundPlant, axis: Axis, position: float) -> None:
     upper = np.inf if axis.upper is None else bound.number(axis.upper)
     if not lower <= position <= upper:
         raise BadInput(
-            f"{axis.name} angle",
+            f"{axis.name} {'angle' if unit_suffix(str(axis.position)) == 'rad' else 'position'}",
             f"equilibrium of plant {bound.plant.name!r}",
-            f"{np.degrees(position):g} deg",
-            f"{np.degrees(lower):g} to {np.degrees(upper):g} deg, the stops",
-            "choose an angle between the stops",
+            _told(axis, position),
+            f"{_told(axis, lower).split()[0]} to {_told(axis, upper)}, the stops",
+            "choose a position between the stops",
         )
 
 
@@ -116,12 +117,19 @@ def _check_inputs(bound: BoundPlant, u0: Array, positions_rad: tuple[float, ...]
             raise BadInput(
                 f"input {variable}",
                 _place(bound, positions_rad),
-                f"{value:.4g} V needed to rest there",
-                f"{lower:g} to {upper:g} V",
-                "choose an angle that the inputs can hold",
+                f"{value:.4g} {unit_of(str(variable))} needed to rest there",
+                f"{lower:g} to {upper:g} {unit_of(str(variable))}",
+                "choose a position that the inputs can hold",
             )
 
 
 def _place(bound: BoundPlant, positions_rad: tuple[float, ...]) -> str:
-    angles = ", ".join(f"{np.degrees(position):g} deg" for position in positions_rad)
+    arms = [axis for axis in bound.model.axes if axis.position is not None]
+    angles = ", ".join(_told(axis, position) for axis, position in zip(arms, positions_rad, strict=False))
     return f"plant {bound.plant.name!r} at {angles}"
+
+
+def _told(axis: Axis, position: float) -> str:
+    """A position as a person reads it: an angle in degrees, anything else in its unit."""
+    name = str(axis.position)
+    return f"{np.degrees(position):g} deg" if unit_suffix(name) == "rad" else f"{position:g} {unit_of(name)}"

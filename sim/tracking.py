@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.log import RunLog
+from records.text.units import said, unit_suffix
 from sim.activity import Activity, activity
 from sim.columns import reference_name
 
@@ -20,15 +21,20 @@ SETTLED_RAD = math.radians(
 )  # a step has settled where the angle stays so near; seed 001 calls errors of 0.5 to 1 deg good
 
 
+# Of an output that is no angle, as a share of its largest step: two per cent is what the field calls settled.
+SETTLED_SHARE, LEFT_SHARE = 0.02, 0.2
+
+
 @dataclass(frozen=True)
 class Tracking:
     """One output over a flight, as its sensor shows it.
 
     `overshoot` is the largest excess beyond a new reference, as a share of the change that led to it; `settling_s` the longest time
-    from such a change until the angle stays within SETTLED_RAD, None where it does not before the next one; `steady_error_rad` the
+    from such a change until it stays within SETTLED_RAD, or of no angle
+    SETTLED_SHARE, None where it does not before the next one; `steady_error_rad` the
     largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole flight; `push_rad` the
     largest |error| in the holds that another output's change began: what the axes do to each other. `activity` is what the output's
-    own input did for that over the whole flight.
+    own input did for that over the whole flight, `step_rad` the output's largest step. `_rad` and `_V` are the units of output and input.
     """
 
     output: str
@@ -40,6 +46,17 @@ class Tracking:
     push_rad: float
     input: str
     activity: Activity
+    step_rad: float = 0.0
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether degrees tell it."""
+        return unit_suffix(self.output) == "rad"
+
+    @property
+    def left_rad(self) -> float:
+        """How far off it may be and yet be with its references."""
+        return LEFT_RAD if self.is_angle else LEFT_SHARE * self.step_rad
 
 
 @dataclass(frozen=True)
@@ -61,10 +78,10 @@ LEFT_OVERSHOOT = 1.0
 def left(found: Sequence[Tracking]) -> tuple[str, ...]:
     """The outputs that did not stay with their references, each with how far it went, in words; nothing of a flight that did."""
     return tuple(
-        f"{entry.output} by {math.degrees(max(entry.steady_error_rad, entry.push_rad)):.1f} deg"
+        f"{entry.output} by {said(entry.output, max(entry.steady_error_rad, entry.push_rad))}"
         for entry in found
-        if not (entry.steady_error_rad <= LEFT_RAD and entry.overshoot <= LEFT_OVERSHOOT)
-        or (entry.settling_s is None and entry.push_rad > LEFT_RAD)
+        if not (entry.steady_error_rad <= entry.left_rad and entry.overshoot <= LEFT_OVERSHOOT)
+        or (entry.settling_s is None and entry.push_rad > entry.left_rad)
     )
 
 
@@ -83,7 +100,9 @@ def tracking(log: RunLog, output: str) -> Tracking:
     own_input = log.columns.inputs[log.columns.outputs.index(output)]
     steps = [hold for hold in holds if hold.change]
     error = reference - measured
-    settling = [settling_s(log.t_s[hold.begin : hold.end], error[hold.begin : hold.end]) for hold in steps]
+    step = max((abs(hold.change) for hold in steps), default=0.0)
+    band = SETTLED_RAD if unit_suffix(output) == "rad" else SETTLED_SHARE * step
+    settling = [settling_s(log.t_s[hold.begin : hold.end], error[hold.begin : hold.end], band) for hold in steps]
     return Tracking(
         output=output,
         holds=len(holds),
@@ -94,16 +113,17 @@ def tracking(log: RunLog, output: str) -> Tracking:
         push_rad=max(pushes, default=0.0),
         input=own_input,
         activity=activity(log.t_s, log.column(own_input)),
+        step_rad=step,
     )
 
 
-def settling_s(t_s: Array, error_rad: Array) -> float | None:
-    """The time from a step, the first of these rows, until |error| stays within SETTLED_RAD; None where its last reading is outside.
+def settling_s(t_s: Array, error_rad: Array, band_rad: float = SETTLED_RAD) -> float | None:
+    """The time from a step, the first of these rows, until |error| stays within the band; None where its last reading is outside.
 
     A row without a reading counts as the one before it.
     """
     read = np.flatnonzero(np.isfinite(error_rad))
-    outside = np.flatnonzero(np.abs(error_rad[read]) > SETTLED_RAD)
+    outside = np.flatnonzero(np.abs(error_rad[read]) > band_rad)
     if not outside.size:
         return 0.0
     last = int(outside[-1])

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from codegen.law_equations import axis_state
 from codegen.law_frame import LawInput, LawState, words_from_state
+from codegen.scales import FASTEST_RAD_S
 from records.table import AxisLaw, ControllerTable
 
 Range = tuple[float, float]
@@ -27,15 +28,12 @@ class LawRanges:
 
 @dataclass(frozen=True)
 class Motion:
-    """What is assumed of each loop's axis: hard stop [rad], and how fast its angle may move from sample to sample [rad/s]."""
+    """What is assumed of each loop's axis: hard stop, and how fast its output may move from sample to sample, a second."""
 
     limits_rad: tuple[float, ...]
     rates_rad_s: tuple[float, ...]
 
 
-# Rates that hold for the CE150 by a margin: full thrust from stop to stop without friction reaches 10.5 rad/s in elevation, full thrust
-# and reaction torque against the damping 8.4 rad/s in azimuth.
-FASTEST_RAD_S = 15.0
 CE150_MOTION = Motion((0.7854, 2.2690), (FASTEST_RAD_S, FASTEST_RAD_S))
 
 

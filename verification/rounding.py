@@ -27,6 +27,7 @@ from codegen.law_frame import (
     words_from_state,
 )
 from records.table import ControllerTable
+from records.text.units import unit_of
 from records.verification import RoundingBound
 from verification.affine import AffineArithmetic, Tracked
 from verification.ranges import CE150_MOTION, LawRanges, Motion, Range, declared_ranges
@@ -58,7 +59,9 @@ def bound_by_slices(
 
 def rounding_record(table: ControllerTable, bounds_V: Sequence[float], method: str) -> RoundingBound:
     """The record of the outputs' bounds [V], by their names."""
-    return RoundingBound({loop.voltage: bound for loop, bound in zip(table.loops, bounds_V, strict=True)}, method)
+    units = {loop.voltage: unit_of(loop.input) or "1" for loop in table.loops if loop.input_unit != "V"}
+    volts = {loop.voltage: bound for loop, bound in zip(table.loops, bounds_V, strict=True)}
+    return RoundingBound(volts, method, units)
 
 
 def _sliced(ranges: LawRanges, table: ControllerTable, slices: int) -> Iterator[LawRanges]:
@@ -77,7 +80,10 @@ def stated_motion(table: ControllerTable, motion: Motion) -> str:
     limits, rates = (
         " and ".join(f"{value:g}" for value in values) for values in (motion.limits_rad, motion.rates_rad_s)
     )
-    return f"angles within {limits} rad moving at most {rates} rad/s"
+    if all(loop.output_unit == "rad" for loop in table.loops):
+        return f"angles within {limits} rad moving at most {rates} rad/s"
+    units = " and ".join(unit_of(loop.output) or "1" for loop in table.loops)
+    return f"measurements within {limits} ({units}) moving at most {rates} of these a second"
 
 
 def restricted_voltages(

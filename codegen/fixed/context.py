@@ -9,9 +9,10 @@ from codegen.fixed.equations import fixed_axis_state
 from codegen.fixed.formats import FILTERED_BITS, CountFormat, LawFormats, count_format, law_formats
 from codegen.fixed.polynomials import PolynomialFormat
 from codegen.fixed.ranges import OverflowProof, Range, prove_no_overflow
-from codegen.law_terms import UNITS, Names
+from codegen.law_terms import Names, coefficient_unit
 from records.loops import Loop, full_scales_V
 from records.table import ControllerTable
+from records.text.units import unit_of
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,9 @@ class Axis:
 
     loop: Loop
     angle: str
+    angle_unit: str
     voltage: str
+    voltage_unit: str
     filter: str
     prefilter_gain: int
     prefilter_time_constant_s: float
@@ -114,15 +117,17 @@ def _axis(table: ControllerTable, index: int, law: FixedLaw[int], formats: LawFo
     names, stated = Names(loop), table.axes[index]
     of = "x" if table.schedule is None else table.loops[table.index(table.schedule.axis)].symbol
     polynomials = [
-        _polynomial(axis.name, term.coefficient, term.polynomial, form.polynomial, of, proof)
+        _polynomial(loop, term.coefficient, term.polynomial, form.polynomial, of, proof)
         for term, form in zip(axis.terms, own.terms, strict=True)
     ]
-    polynomials.append(_polynomial(axis.name, "u_ff_V", axis.feedforward_V, own.feedforward, f"{of}_ref", proof))
+    polynomials.append(_polynomial(loop, "u_ff_V", axis.feedforward_V, own.feedforward, f"{of}_ref", proof))
     last = f"e_{table.order}_rad"
     return Axis(
         loop=loop,
         angle=names.angle,
+        angle_unit=names.angle_unit,
         voltage=names.voltage,
+        voltage_unit=names.voltage_unit,
         filter="take_reference" if axis.prefilter_gain is None else "prefilter",
         prefilter_gain=axis.prefilter_gain or 0,
         prefilter_time_constant_s=stated.prefilter_time_constant_s,
@@ -155,7 +160,7 @@ def _product(axis: str, term: FixedTerm[int], last: str, of: str) -> str:
 
 
 def _polynomial(
-    axis: str, name: str, p: FixedPolynomial[int], form: PolynomialFormat, of: str, proof: OverflowProof
+    loop: Loop, name: str, p: FixedPolynomial[int], form: PolynomialFormat, of: str, proof: OverflowProof
 ) -> Polynomial:
     coefficients = [Coefficient(p.constant, form.places, "")]
     for index, (part, shape) in enumerate(zip(p.powers, form.powers, strict=True), start=1):
@@ -168,39 +173,41 @@ def _polynomial(
         coefficients.append(Coefficient(part.coefficient, shape.places, text))
     return Polynomial(
         name=name,
-        unit=UNITS.get(name[0], "V"),
+        unit=coefficient_unit(loop, "u_ff" if name == "u_ff_V" else name[0]),
         places=form.places,
-        range=proof.ranges[f"{axis}.{name}"],
+        range=proof.ranges[f"{loop.axis}.{name}"],
         of=of,
         coefficients=tuple(coefficients),
     )
 
 
-def _voltage_limits(table: ControllerTable, law: FixedLaw[int]) -> list[tuple[str, int, float]]:
+def _voltage_limits(table: ControllerTable, law: FixedLaw[int]) -> list[tuple[str, int, float, str]]:
     rows = []
     for loop, axis, own in zip(table.loops, law.axes, table.axes, strict=True):
-        prefix = Names(loop).voltage
+        prefix, end, unit = Names(loop).voltage, Names(loop).voltage_unit, unit_of(loop.input)
         rows += [
-            (f"{prefix}_MIN_V", axis.u_min_V, own.u_min_V),
-            (f"{prefix}_MAX_V", axis.u_max_V, own.u_max_V),
-            (f"{prefix}_SAFE_V", axis.u_safe_V, own.u_safe_V),
+            (f"{prefix}_MIN{end}", axis.u_min_V, own.u_min_V, unit),
+            (f"{prefix}_MAX{end}", axis.u_max_V, own.u_max_V, unit),
+            (f"{prefix}_SAFE{end}", axis.u_safe_V, own.u_safe_V, unit),
         ]
     return rows
 
 
-def _angle_limits(table: ControllerTable, law: FixedLaw[int], formats: LawFormats) -> list[tuple[str, int, str]]:
-    rows = []
+def _angle_limits(table: ControllerTable, law: FixedLaw[int], formats: LawFormats) -> list[tuple[str, int, str, str]]:
+    rows: list[tuple[str, int, float, str]] = []
     for loop, axis, own in zip(table.loops, law.axes, table.axes, strict=True):
-        prefix = Names(loop).angle
+        prefix, end, unit = Names(loop).angle, Names(loop).angle_unit, unit_of(loop.output)
         rows += [
-            (f"{prefix}_REF_MIN_RAD", axis.reference_min_rad, own.reference_min_rad),
-            (f"{prefix}_REF_MAX_RAD", axis.reference_max_rad, own.reference_max_rad),
+            (f"{prefix}_REF_MIN{end}", axis.reference_min_rad, own.reference_min_rad, unit),
+            (f"{prefix}_REF_MAX{end}", axis.reference_max_rad, own.reference_max_rad, unit),
         ]
     if law.schedule is not None and table.schedule is not None:
-        prefix = Names(table.loops[law.schedule.index]).angle
+        loop = table.loops[law.schedule.index]
+        prefix, end, unit = Names(loop).angle, Names(loop).angle_unit, unit_of(loop.output)
         rows += [
-            (f"{prefix}_MIN_RAD", law.schedule.min_rad, table.schedule.min_rad),
-            (f"{prefix}_MAX_RAD", law.schedule.max_rad, table.schedule.max_rad),
+            (f"{prefix}_MIN{end}", law.schedule.min_rad, table.schedule.min_rad, unit),
+            (f"{prefix}_MAX{end}", law.schedule.max_rad, table.schedule.max_rad, unit),
         ]
-    rows.append(("ANGLE_LIMIT_RAD", law.angle_max_rad, formats.angle_limit_rad))
-    return [(name, word, f"{value:.9g}") for name, word, value in rows]
+    units = " or ".join(dict.fromkeys(unit_of(loop.output) or "1" for loop in table.loops))
+    rows.append(("ANGLE_LIMIT_RAD", law.angle_max_rad, formats.angle_limit_rad, units))
+    return [(name, word, f"{value:.9g}", unit) for name, word, value, unit in rows]

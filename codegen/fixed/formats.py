@@ -19,13 +19,15 @@ from codegen.fixed.polynomials import (
 from codegen.law_constants import widest_region_rad
 from codegen.law_frame import polynomial_bound, without_vanishing_powers
 from codegen.law_terms import Coefficient, coefficients
+from codegen.scales import fastest, room, widest_reference
 from records.errors import BadInput
+from records.loops import Loop
 from records.table import AxisLaw, ControllerTable, Polynomial
+from records.text.units import unit_of
 
 MISSING = -(2**31)  # the word that stands for "no number", as NaN does in float32
 HEADROOM_BITS = 5  # feedback may reach 2^5 times the limits at least
 LEAST_SPAN = 2**16  # steps between the limits: 20 times finer than the PWM
-FASTEST_RAD_S = 15.0  # motion of an axis that feedback has room for
 COEFFICIENT_BITS = 17  # every scheduled coefficient has at least so many, but for those of the anti-windup
 FILTERED_BITS = 28  # of magnitude, of a filtered reference
 SUM_BITS = 62  # of the exact sum of products
@@ -102,18 +104,20 @@ def value_of(word: int, places: int) -> float:
 def law_formats(table: ControllerTable) -> LawFormats:
     """The formats of a table; raises BadInput when its numbers span more than 32-bit words can hold."""
     axes = table.axes
-    widest_reference_rad = max(_widest_reference(axis) for axis in axes)
-    angle_limit_rad = 2.0 ** bits_of(widest_reference_rad + math.pi / 2.0)
+    widest_reference_rad = max(widest_reference(axis) for axis in axes)
+    each = list(zip(table.loops, axes, strict=True))
+    angle_limit_rad = 2.0 ** bits_of(max(widest_reference(axis) + room(loop, axis) for loop, axis in each))
     # The n-th difference of an error is up to 2^n times the error; few states have the room of three as well.
     order = max(3, table.order)
     error_rad_bits = bits_of(widest_reference_rad + angle_limit_rad)
     angle_places = WORD_BITS - order - error_rad_bits
     s_V_bits = bits_of(max(_widest_s(table, axis) for axis in axes))
     limit_V_bits = bits_of(max(max(abs(axis.u_min_V), abs(axis.u_max_V)) for axis in axes))
-    v_V = max(_widest_feedback(table, axis, angle_limit_rad) + 2.0 * _widest_s(table, axis) for axis in axes)
+    v_V = max(_widest_feedback(table, *one, angle_limit_rad) + 2.0 * _widest_s(table, one[1]) for one in each)
     w_V_bits = max(HEADROOM_BITS + limit_V_bits, 2 + s_V_bits, 1 + bits_of(v_V))  # v may take half of it
     voltage_places = WORD_BITS - (order - 1) - w_V_bits
     _refuse_coarse(axes, voltage_places, v_V)
+    _refuse_fine(table, angle_places)
     schedule_bits = max(0, bits_of(table.widest_schedule_rad))
     reference_bits = 1 + max(0, bits_of(widest_region_rad(table)))  # a broken filter may reach the end of its word
     shared = _Shared(
@@ -145,6 +149,20 @@ def _refuse_coarse(axes: tuple[AxisLaw, ...], voltage_places: int, v_V: float) -
         )
 
 
+def _refuse_fine(table: ControllerTable, angle_places: int) -> None:
+    """One format holds what all loops measure, and a sensor's step in it has to be a step."""
+    for loop, axis in zip(table.loops, table.axes, strict=True):
+        if axis.resolution_rad * 2.0**angle_places < 1.0:
+            unit = unit_of(loop.output)
+            raise BadInput(
+                "controller table",
+                f"axis {loop.axis}",
+                f"a sensor whose step is {axis.resolution_rad:.3g} {unit}",
+                f"at least {0.5**angle_places:.3g}, one step of the word that holds all references and measurements",
+                "generate with --arithmetic float32, or narrow the references of the loops with the largest numbers",
+            )
+
+
 @dataclass(frozen=True)
 class _Shared:
     """What the formats of all axes depend on."""
@@ -168,7 +186,7 @@ def _axis_formats(shared: _Shared, name: str, axis: AxisLaw) -> AxisFormats:
     terms = tuple(_term(shared, coefficient, sum_places) for coefficient in _present(axis))
     psi_ref_rad = widest_region_rad(shared.table)
     return AxisFormats(
-        reference_places=FILTERED_BITS - bits_of(_widest_reference(axis)),
+        reference_places=FILTERED_BITS - bits_of(widest_reference(axis)),
         sum_places=sum_places,
         terms=terms,
         feedforward=polynomial_format(axis.feedforward_V, psi_ref_rad, shared.reference_bits, shared.voltage_places),
@@ -246,16 +264,14 @@ def _bound(polynomial: Polynomial, shared: _Shared) -> float:
     return polynomial_bound(polynomial, shared.psi_rad)
 
 
-def _widest_reference(axis: AxisLaw) -> float:
-    return max(abs(axis.reference_min_rad), abs(axis.reference_max_rad))
-
-
-def _widest_feedback(table: ControllerTable, axis: AxisLaw, angle_limit_rad: float) -> float:
-    """Bound of v while the axis moves no faster than FASTEST_RAD_S and saturation is no deeper than the span of the limits [V]."""
+def _widest_feedback(table: ControllerTable, loop: Loop, axis: AxisLaw, angle_limit_rad: float) -> float:
+    """Bound of v while the axis moves no faster than codegen.scales says and saturation is no deeper than the span of the limits [V]."""
     psi_rad = table.widest_schedule_rad
     reference_move_rad = axis.prefilter_gain(table.sample_period_s) * (axis.reference_max_rad - axis.reference_min_rad)
-    move_rad = 1.01 * (FASTEST_RAD_S * table.sample_period_s + axis.resolution_rad + reference_move_rad)
-    e_rad = (_widest_reference(axis) + angle_limit_rad, *(move_rad * 2.0**i for i in range(axis.order)))
+    move_rad = 1.01 * (
+        fastest(loop, axis, table.sample_period_s) * table.sample_period_s + axis.resolution_rad + reference_move_rad
+    )
+    e_rad = (widest_reference(axis) + angle_limit_rad, *(move_rad * 2.0**i for i in range(axis.order)))
     span_V, s_V = axis.u_max_V - axis.u_min_V, 2.0 * _widest_s(table, axis)
     from_e_V = sum(polynomial_bound(q, psi_rad) * e for q, e in zip(axis.q_V_rad, e_rad, strict=True))
     from_s_V = sum(polynomial_bound(p, psi_rad) * s_V * 2.0**i for i, p in enumerate(axis.p))

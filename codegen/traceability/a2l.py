@@ -135,16 +135,31 @@ def _data_type(member: Member) -> tuple[str, float, float]:
 
 def _conversion(table: ControllerTable, arithmetic: str, member: Member) -> Conversion:
     """By the unit in the name; the words of the fixed-point law have their places as well."""
-    unit = _UNITS.get(member.path.rsplit("_", 1)[-1], "1")
-    if arithmetic != "fixed" or unit not in ("V", "rad") or not _FIXED_SIGNALS.match(member.path):
+    kind, unit = _kind(table, member.path)
+    if arithmetic != "fixed" or kind not in ("V", "rad") or not _FIXED_SIGNALS.match(member.path):
         return Conversion(f"in_{unit}" if unit != "1" else "plain", unit, 1.0)
-    places = _places(table, member.path, unit)
+    places = _places(table, member.path, kind)
     return Conversion(f"in_{unit}_{places}_places", unit, 2.0**-places)
 
 
-def _places(table: ControllerTable, path: str, unit: str) -> int:
+def _kind(table: ControllerTable, path: str) -> tuple[str, str]:
+    """What a member is inside, `rad` of what a loop measures and `V` of what it commands (records/loops.py), and its own unit."""
+    name = path.rsplit(".", 1)[-1]
+    for loop in table.loops:
+        if name in (loop.output, loop.reference):
+            return "rad", loop.output_unit or "1"
+        if name == loop.input:
+            return "V", loop.input_unit or "1"
+    kind = _UNITS.get(path.rsplit("_", 1)[-1], "1")
+    for loop in table.loops:
+        if f".{loop.axis}." in path or path.startswith(f"{loop.axis}_limits."):
+            return kind, {"rad": loop.output_unit or "1", "V": loop.input_unit or "1"}.get(kind, kind)
+    return kind, kind
+
+
+def _places(table: ControllerTable, path: str, kind: str) -> int:
     formats = law_formats(table)
-    if unit == "V":
+    if kind == "V":
         return formats.voltage_places
     if path.endswith(("reference_1_rad", "reference_2_rad")):
         (index,) = (index for index, loop in enumerate(table.loops) if f".{loop.axis}." in path)

@@ -62,25 +62,27 @@ def _word(value: float, places: int, made_up: float = 0.0, neglected: float = 0.
 def _words(table: ControllerTable) -> Iterator[tuple[str, Literal]]:
     law = fixed_constants(table, _word)
     for loop, axis in zip(table.loops, law.axes, strict=True):
-        angle, voltage = Names(loop).angle, Names(loop).voltage
+        names = Names(loop)
+        angle, voltage = names.angle, names.voltage
         for term in axis.terms:
-            yield from _coefficients(array_name(axis.name, term.coefficient), term.polynomial)
-        yield from _coefficients(array_name(axis.name, "u_ff_V"), axis.feedforward_V)
-        yield f"LAW_{voltage}_MIN_V", axis.u_min_V
-        yield f"LAW_{voltage}_MAX_V", axis.u_max_V
-        yield f"LAW_{voltage}_SAFE_V", axis.u_safe_V
-        yield f"LAW_{angle}_REF_MIN_RAD", axis.reference_min_rad
-        yield f"LAW_{angle}_REF_MAX_RAD", axis.reference_max_rad
+            yield from _coefficients(array_name(loop, term.coefficient), term.polynomial)
+        yield from _coefficients(array_name(loop, "u_ff_V"), axis.feedforward_V)
+        yield f"LAW_{voltage}_MIN{names.voltage_unit}", axis.u_min_V
+        yield f"LAW_{voltage}_MAX{names.voltage_unit}", axis.u_max_V
+        yield f"LAW_{voltage}_SAFE{names.voltage_unit}", axis.u_safe_V
+        yield f"LAW_{angle}_REF_MIN{names.angle_unit}", axis.reference_min_rad
+        yield f"LAW_{angle}_REF_MAX{names.angle_unit}", axis.reference_max_rad
         if axis.prefilter_gain is not None:
             yield f"{axis.name}_limits.prefilter_gain", axis.prefilter_gain
     formats = law_formats(table)
     for loop, own in zip(table.loops, table.axes, strict=True):
         places = formats.angle_places + count_format(formats, own).shift
-        yield f"LAW_{Names(loop).angle}_RESOLUTION_RAD", _word(own.resolution_rad, places)
+        yield f"LAW_{Names(loop).angle}_RESOLUTION{Names(loop).angle_unit}", _word(own.resolution_rad, places)
     if law.schedule is not None:
-        angle = Names(table.loops[law.schedule.index]).angle
-        yield f"LAW_{angle}_MIN_RAD", law.schedule.min_rad
-        yield f"LAW_{angle}_MAX_RAD", law.schedule.max_rad
+        names = Names(table.loops[law.schedule.index])
+        angle = names.angle
+        yield f"LAW_{angle}_MIN{names.angle_unit}", law.schedule.min_rad
+        yield f"LAW_{angle}_MAX{names.angle_unit}", law.schedule.max_rad
     yield "LAW_ANGLE_LIMIT_RAD", law.angle_max_rad
 
 

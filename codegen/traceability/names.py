@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 from codegen.fixed.formats import MISSING, law_formats
 from codegen.law import ARITHMETIC_CODES
 from codegen.law_frame import without_vanishing_powers
-from codegen.law_terms import UNITS, Names, array_name, coefficients
+from codegen.law_terms import Names, array_name, coefficient_unit, coefficients
 from codegen.traceability.literals import LEFT_OUT, LITERALS, Literal
 from codegen.twin import PWM_TICKS
 from records.errors import BadInput
-from records.loops import Loop, full_scales_V
+from records.loops import Loop
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.text.units import unit_of
 
 # The parameters of the helicopter's equations that are the limits of an input.
 _LIMITS = {"u_M_V": ("u_min", "u_max"), "u_T_V": ("uT_min", "uT_max")}
@@ -71,11 +72,11 @@ def _members(table: ControllerTable) -> dict[str, str]:
         f"{loop.axis}_limits.{member}": f"LAW_{own}_{suffix}"
         for loop in table.loops
         for member, own, suffix in (
-            ("reference_min_rad", Names(loop).angle, "REF_MIN_RAD"),
-            ("reference_max_rad", Names(loop).angle, "REF_MAX_RAD"),
-            ("u_min_V", Names(loop).voltage, "MIN_V"),
-            ("u_max_V", Names(loop).voltage, "MAX_V"),
-            ("u_safe_V", Names(loop).voltage, "SAFE_V"),
+            ("reference_min_rad", Names(loop).angle, "REF_MIN" + Names(loop).angle_unit),
+            ("reference_max_rad", Names(loop).angle, "REF_MAX" + Names(loop).angle_unit),
+            ("u_min_V", Names(loop).voltage, "MIN" + Names(loop).voltage_unit),
+            ("u_max_V", Names(loop).voltage, "MAX" + Names(loop).voltage_unit),
+            ("u_safe_V", Names(loop).voltage, "SAFE" + Names(loop).voltage_unit),
         )
     }
 
@@ -93,16 +94,18 @@ def _expected(wanted: str, names: Sequence[str]) -> str:
 
 def _constants(table: ControllerTable) -> Iterator[Constant]:
     for loop in table.loops:
-        yield from _coefficients(table, loop.axis, table.axis(loop.axis))
+        yield from _coefficients(table, loop, table.axis(loop.axis))
     for loop in table.loops:
         yield from _limits(table, loop, table.axis(loop.axis))
     design = "wish of the plant file, [design]"
     if table.schedule is not None:
         loop = table.loops[table.index(table.schedule.axis)]
         for end, value in (("min", table.schedule.min_rad), ("max", table.schedule.max_rad)):
-            made_as = f"{design} {loop.symbol}_{end}_rad, or the stop of the plant"
-            yield Constant(f"LAW_{Names(loop).angle}_{end.upper()}_RAD", value, "rad", made_as)
-    scales = " and ".join(f"{scale_V:g} V" for scale_V in full_scales_V(table.loops))
+            key = loop.own(f"{loop.symbol}_{end}_rad")
+            made_as = f"{design} {key}, or the stop of the plant"
+            name = f"LAW_{Names(loop).angle}_{end.upper()}{Names(loop).angle_unit}"
+            yield Constant(name, value, unit_of(loop.output), made_as)
+    scales = " and ".join(dict.fromkeys(f"{loop.full_scale_V:g} {unit_of(loop.input)}" for loop in table.loops))
     yield Constant("LAW_PWM_TICKS", PWM_TICKS, "1", f"constant of the board: its timer's ticks of {scales}")
     yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
     yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
@@ -136,35 +139,60 @@ def _formats(table: ControllerTable) -> Iterator[Constant]:
     yield Constant("LAW_VOLTAGE_PLACES", formats.voltage_places, "1", voltages)
 
 
-def _of_power(power: int) -> str:
-    return f"{power} [rad^-{power}]" if power else "0"
+def _of_power(power: int, unit: str) -> str:
+    return f"{power} [{unit}^-{power}]" if power else "0"
 
 
-def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:
+def _coefficients(table: ControllerTable, loop: Loop, law: AxisLaw) -> Iterator[Constant]:
+    axis = loop.axis
+    unit = "" if table.schedule is None else unit_of(table.loops[table.index(table.schedule.axis)].output)
     pole = table.origin.get(axis, {}).get("observer_pole", float("nan"))
     for entry in coefficients(law):
         letter, polynomial = entry.letter, entry.polynomial
         for power, value in enumerate(without_vanishing_powers(polynomial)):
-            made_as = _OBSERVER.format(pole=pole, order=law.order) if letter == "a" else f"{_FIT}{_of_power(power)}"
-            name = f"{array_name(axis, entry.name)}[{power}]"
-            yield Constant(name, value, entry.unit, made_as, axis, letter, entry.index, power, polynomial)
+            made_as = (
+                _OBSERVER.format(pole=pole, order=law.order) if letter == "a" else f"{_FIT}{_of_power(power, unit)}"
+            )
+            name = f"{array_name(loop, entry.name)}[{power}]"
+            yield Constant(
+                name, value, coefficient_unit(loop, letter), made_as, axis, letter, entry.index, power, polynomial
+            )
     for power, value in enumerate(without_vanishing_powers(law.feedforward_V)):
-        name = f"{array_name(axis, 'u_ff_V')}[{power}]"
-        made_as = f"equilibrium voltage, {_FIT}{_of_power(power)}"
-        yield Constant(name, value, UNITS["u_ff"], made_as, axis, "u_ff", 0, power, law.feedforward_V)
+        name = f"{array_name(loop, 'u_ff_V')}[{power}]"
+        made_as = f"equilibrium voltage, {_FIT}{_of_power(power, unit)}"
+        yield Constant(name, value, coefficient_unit(loop, "u_ff"), made_as, axis, "u_ff", 0, power, law.feedforward_V)
 
 
 def _limits(table: ControllerTable, loop: Loop, law: AxisLaw) -> Iterator[Constant]:
-    axis, angle, voltage = loop.axis, Names(loop).angle, Names(loop).voltage
+    axis, names, own = loop.axis, Names(loop), loop.own
+    angle, voltage, per_count, volt = names.angle, names.voltage, unit_of(loop.output), unit_of(loop.input)
     low, high = _LIMITS.get(loop.input, (None, None))
-    yield Constant(f"LAW_{voltage}_MIN_V", law.u_min_V, "V", "limit of the plant's input", axis, parameter=low)
-    yield Constant(f"LAW_{voltage}_MAX_V", law.u_max_V, "V", "limit of the plant's input", axis, parameter=high)
-    yield Constant(f"LAW_{voltage}_SAFE_V", law.u_safe_V, "V", "0 V, or the limit nearest to it", axis)
+    yield Constant(
+        f"LAW_{voltage}_MIN{names.voltage_unit}", law.u_min_V, volt, "limit of the plant's input", axis, parameter=low
+    )
+    yield Constant(
+        f"LAW_{voltage}_MAX{names.voltage_unit}", law.u_max_V, volt, "limit of the plant's input", axis, parameter=high
+    )
+    yield Constant(
+        f"LAW_{voltage}_SAFE{names.voltage_unit}", law.u_safe_V, volt, f"0 {volt}, or the limit nearest to it", axis
+    )
     wish = f"wish of the plant file, [design.{axis}]"
-    yield Constant(f"LAW_{angle}_REF_MIN_RAD", law.reference_min_rad, "rad", f"{wish} reference_min_rad", axis)
-    yield Constant(f"LAW_{angle}_REF_MAX_RAD", law.reference_max_rad, "rad", f"{wish} reference_max_rad", axis)
-    sensor = f"encoder step, [sensors.{loop.output}] resolution_rad"
-    yield Constant(f"LAW_{angle}_RESOLUTION_RAD", law.resolution_rad, "rad", sensor, axis)
+    yield Constant(
+        f"LAW_{angle}_REF_MIN{names.angle_unit}",
+        law.reference_min_rad,
+        per_count,
+        f"{wish} {own('reference_min_rad')}",
+        axis,
+    )
+    yield Constant(
+        f"LAW_{angle}_REF_MAX{names.angle_unit}",
+        law.reference_max_rad,
+        per_count,
+        f"{wish} {own('reference_max_rad')}",
+        axis,
+    )
+    sensor = f"encoder step, [sensors.{loop.output}] {own('resolution_rad')}"
+    yield Constant(f"LAW_{angle}_RESOLUTION{names.angle_unit}", law.resolution_rad, per_count, sensor, axis)
     T_s = law.prefilter_time_constant_s
     gain = law.prefilter_gain(table.sample_period_s)
     made_as = f"1 - exp(-Ts/T) with T = {T_s:g} s, {wish} prefilter_time_constant_s"

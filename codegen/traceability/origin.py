@@ -114,7 +114,8 @@ def _designed(table: ControllerTable, constant: Constant, point: int) -> float:
     origin = table.origin
     if constant.letter == "u_ff":
         return float(origin["operating_points"][point]["u0_V"][table.index(constant.axis)])
-    group = "q_V_rad" if constant.letter == "q" else "p"
+    own = table.loops[table.index(constant.axis)].own
+    group = own("q_V_rad") if constant.letter == "q" else "p"
     return float(origin[constant.axis][group][point][constant.index])
 
 

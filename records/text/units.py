@@ -1,5 +1,6 @@
 """Units as text: enough to tell that "N m s^2" is "kg m^2" and that "kg m" is not."""
 
+import math
 import re
 from collections.abc import Mapping
 
@@ -65,6 +66,18 @@ def unit_suffix(name: str) -> str:
 def unit_of(name: str) -> str:
     """The unit that a column's name ends in, as a person writes it; empty where it states none."""
     return unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s").replace("Nm", "N m")
+
+
+def said(name: str, value: float) -> str:
+    """A value of this column as a person reads it: an angle in degrees, anything else in its unit."""
+    if unit_suffix(name) == "rad":
+        return f"{math.degrees(value):.1f} deg"
+    return f"{value:.4g} {unit_of(name)}".rstrip()
+
+
+def shown(name: str) -> tuple[str, float]:
+    """The unit in which a person reads a column, degrees for an angle, and what one of its own is in that."""
+    return ("deg", math.degrees(1.0)) if unit_suffix(name) == "rad" else (unit_of(name) or "1", 1.0)
 
 
 def label(name: str) -> str:

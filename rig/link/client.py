@@ -138,11 +138,9 @@ class BoardClient:
         self.close()
 
     def _words(self, name: str, quantities: tuple[float, ...]) -> dict[str, Value]:
-        """The fields of a message, all of them numbers of the law, in their declared order."""
+        """The fields of a message, all of them references or measurements of the law, in their declared order."""
         fields = self._line.protocol.message(name).fields
-        return {
-            part.name: self._numbers.to_word(value, part.unit) for part, value in zip(fields, quantities, strict=True)
-        }
+        return {part.name: self._numbers.to_word(value, "rad") for part, value in zip(fields, quantities, strict=True)}
 
     def _command(self, name: str, values: Mapping[str, Value]) -> None:
         self._request(name, values, "RESULT")

@@ -9,7 +9,7 @@ from records.table import ControllerTable
 
 
 class Numbers(Protocol):
-    """How one arithmetic of the law writes a quantity of a unit (`rad` or `V`) into a word, and reads it back."""
+    """How one arithmetic of the law writes what it measures (`rad`) or commands (`V`) into a word, and reads it back."""
 
     name: str
 

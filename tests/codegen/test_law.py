@@ -91,9 +91,9 @@ def test_an_unknown_arithmetic_is_refused_with_its_name() -> None:
     ("change", "complaint"),
     [
         ({"q_V_rad": ((0.0,),) * 4}, "every q is zero"),
-        ({"q_V_rad": ((1e6,),) * 4}, "voltages of up to"),
-        ({"feedforward_V": (1e39,)}, "voltages of up to"),
-        ({"p": ((float("nan"),),) * 3}, "voltages of up to nan"),
+        ({"q_V_rad": ((1e6,),) * 4}, "commands of up to"),
+        ({"feedforward_V": (1e39,)}, "commands of up to"),
+        ({"p": ((float("nan"),),) * 3}, "commands of up to nan"),
     ],
 )
 def test_a_table_that_cannot_fly_is_refused(change: dict[str, object], complaint: str) -> None:

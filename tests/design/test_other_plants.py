@@ -116,8 +116,8 @@ def test_what_cannot_be_designed_is_one_line_that_names_it(change: dict[str, Any
     assert "\n" not in str(caught.value)
 
 
-def test_a_loop_of_a_current_is_refused_with_what_takes_its_plant() -> None:
-    with pytest.raises(BadInput, match=r"design.coil: loop: got i_A and u_1.*without \[design\] `simulate`"):
+def test_a_loop_of_a_current_by_a_duty_is_asked_for_its_range_in_its_own_unit() -> None:
+    with pytest.raises(BadInput, match=r"design.coil: key 'reference_min_A': got nothing"):
         read_settings(bind(replace(plant("maglev_coil").plant, design={"coil": {"poles_rad_s": [-1.0, -2.0]}})))
 
 

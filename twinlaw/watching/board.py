@@ -12,9 +12,10 @@ from records.errors import BadInput
 from records.law_table import FlownTable
 from records.logs.live import LiveRow
 from records.protocol import PROTOCOL
+from records.text.units import shown
 from rig.flight.live import LiveFlight
 from rig.link.replies import Health
-from twinlaw.watching.source import DEG, Step
+from twinlaw.watching.source import Step
 
 HEALTH_EVERY = 100  # samples
 
@@ -53,7 +54,10 @@ class BoardSource:
     def facts(self) -> Mapping[str, Any]:
         """Kind, mode, who the board is, and how far references may go."""
         axes = self._table.axes
-        limits = [[DEG * axis.reference_min_rad, DEG * axis.reference_max_rad] for axis in axes]
+        limits = [
+            [factor * axis.reference_min_rad, factor * axis.reference_max_rad]
+            for factor, axis in zip(self._factors(), axes, strict=True)
+        ]
         own = {"kind": "board", "mode": self._flight.mode, "limits_deg": limits}
         return {**self._facts, **own, "table": self._table.digest[:16]}
 
@@ -69,7 +73,7 @@ class BoardSource:
             "received": {} if health is None else asdict(health.received),
             "round_trip_ms": None if round_trip_s is None else 1e3 * round_trip_s,
             "law_cycles": self._flight.law_cycles,
-            "reference_deg": [DEG * angle for angle in self._reference],
+            "reference_deg": [factor * value for factor, value in zip(self._factors(), self._reference, strict=True)],
             "manoeuvre": self._place is not None,
             "trouble": self.trouble,
         }
@@ -124,6 +128,10 @@ class BoardSource:
         self._demand_armed()
         self._place = 0
 
+    def _factors(self) -> list[float]:
+        """What one of each output's unit is in the unit shown."""
+        return [shown(loop.output)[1] for loop in self._table.loops]
+
     def _refer(self, angles_deg: Any) -> None:
         self._demand_armed()
         axes = self._table.axes
@@ -131,13 +139,14 @@ class BoardSource:
             names = " and ".join(loop.axis for loop in self._table.loops)
             raise _refused(repr(angles_deg)[:40], f"{len(axes)} angles in deg", f"give {names}")
         wanted = []
-        for angle, axis in zip(angles_deg, axes, strict=True):
-            low, high = DEG * axis.reference_min_rad, DEG * axis.reference_max_rad
+        for angle, axis, loop in zip(angles_deg, axes, self._table.loops, strict=True):
+            unit, factor = shown(loop.output)
+            low, high = factor * axis.reference_min_rad, factor * axis.reference_max_rad
             number = isinstance(angle, int | float) and not isinstance(angle, bool) and math.isfinite(angle)
             if not number or not low - 1e-6 <= angle <= high + 1e-6:
-                raise _refused(f"a reference of {angle!r:.20} deg", f"{low:.0f} to {high:.0f} deg", "stay inside")
+                raise _refused(f"a reference of {angle!r:.20} {unit}", f"{low:.3g} to {high:.3g} {unit}", "stay inside")
             # Between two encoder steps an integrating loop would hunt from one to the other.
-            wanted.append(axis.resolution_rad * round(angle / DEG / axis.resolution_rad))
+            wanted.append(axis.resolution_rad * round(angle / factor / axis.resolution_rad))
         self._place, self._reference = None, tuple(wanted)
 
     def _demand_armed(self) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 from design.migration import SlowestPole
 from design.report import AxisReport, DesignReport
+from records.text.units import said
 from twinlaw.pages.page import Row
 
 _DESIGN_HEADING: Row = (
@@ -29,7 +30,7 @@ def design_heading(report: DesignReport) -> Row:
 
 def design_rows(report: DesignReport) -> list[Row]:
     """One row per axis: slowest pole designed, worst after fit and rounding, worst of each margin over Psi; then all loops coupled."""
-    rows = [_design_row(axis) for axis in report.axes]
+    rows = [_design_row(report, axis) for axis in report.axes]
     if len(rows) == 1:
         return rows
     whose = "both" if len(rows) == 2 else "all"
@@ -38,19 +39,19 @@ def design_rows(report: DesignReport) -> list[Row]:
         "",
         "",
         f"{report.coupled.worst_rad_s:.2f} rad/s",
-        degrees(report.coupled.at_psi_rad),
+        said(report.scheduled_by, report.coupled.at_psi_rad),
     )
     return [*rows, (*coupled, *[""] * (len(_DESIGN_HEADING) - len(coupled)))]
 
 
-def _design_row(axis: AxisReport) -> Row:
+def _design_row(report: DesignReport, axis: AxisReport) -> Row:
     worst = axis.worst_margins
     return (
         axis.axis,
         f"{axis.designed_slowest_rad_s:.2f} rad/s",
         f"{axis.after_fit.worst_rad_s:.2f} rad/s",
         f"{axis.after_rounding.worst_rad_s:.2f} rad/s",
-        degrees(axis.after_rounding.at_psi_rad),
+        said(report.scheduled_by, axis.after_rounding.at_psi_rad),
         f"{worst.sensitivity:.2f}",
         degrees(worst.phase_rad),
         f"{worst.gain_up:.2f} / {worst.gain_down:.2f}",

@@ -8,7 +8,9 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from design.report import AxisReport, DesignReport
+from records.loops import Loop
 from records.quality import Colour, Quality, flag
+from records.text.units import shown, unit_of
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.plots import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, grid, row, stack
 from twinlaw.pages.quality import quality_section, quality_sentence
@@ -63,7 +65,8 @@ def _pole_panel(axis: AxisReport) -> Panel:
 
 
 def _margins(report: DesignReport) -> Section:
-    psi_deg = np.degrees(report.psi_rad)
+    unit, factor = shown(report.scheduled_by)
+    psi_deg = factor * report.psi_rad
 
     def panel(label: str, figure: str, scale: float) -> Panel:
         curves = [
@@ -84,12 +87,12 @@ def _margins(report: DesignReport) -> Section:
             f"Of the {report.arithmetic} table, as it flies. The last panel closes all loops on the whole plant, cross-coupling included.",
         ),
         (Table(design_rows(report), design_heading(report)),),
-        (stack(panels, f"{report.angle} Psi [deg]", panel_height_in=1.7),),
+        (stack(panels, f"{report.angle} Psi [{unit}]", panel_height_in=1.7),),
     )
 
 
 def _coefficients(report: DesignReport) -> Section:
-    worst = [f"{axis.axis} {1e3 * axis.feedforward_error_V:.2g} mV" for axis in report.axes]
+    worst = [f"{axis.axis} {_small(report.loop(axis.axis), axis.feedforward_error_V)}" for axis in report.axes]
     return Section(
         f"Coefficients over the {report.angle}",
         (
@@ -102,11 +105,17 @@ def _coefficients(report: DesignReport) -> Section:
     )
 
 
+def _small(loop: Loop, value: float) -> str:
+    return f"{1e3 * value:.2g} mV" if loop.input_unit == "V" else f"{value:.2g} {unit_of(loop.input)}"
+
+
 def coefficient_plot(report: DesignReport) -> str:
     """q_i, p_i and u_ff of both axes over Psi, as SVG text."""
     axes = report.axes
     lines = [[_coefficient(report, axis, *which) for axis in axes] for which in _which(report.axes[0])]
-    return grid(lines, [axis.axis for axis in axes], f"{report.angle} Psi [deg]", height_in=1.3)
+    return grid(
+        lines, [axis.axis for axis in axes], f"{report.angle} Psi [{shown(report.scheduled_by)[0]}]", height_in=1.3
+    )
 
 
 def _which(axis: AxisReport) -> list[tuple[str, int]]:
@@ -117,19 +126,30 @@ def _which(axis: AxisReport) -> list[tuple[str, int]]:
 
 def _coefficient(report: DesignReport, axis: AxisReport, of: str, place: int) -> Panel:
     fine = np.linspace(report.points_rad[0], report.points_rad[-1], FINE)
+    loop = report.loop(axis.axis)
+    volt, per = unit_of(loop.input) or "1", unit_of(loop.output) or "1"
     if of == "u_ff":
-        designed, fitted, label = axis.operating_V, axis.feedforward_V, "u_ff [V]"
+        designed, fitted, label = axis.operating_V, axis.feedforward_V, f"u_ff [{volt}]"
     else:
         designed = np.array([getattr(design, of)[place] for design in axis.designs])
         fitted = getattr(axis.schedule, of)[place]
-        label = f"q_{place} [V/rad]" if of == "q" else f"p_{place} [-]"
-    return Panel(label, _fit(report.points_rad, designed, fine, np.asarray(polyval(fine, fitted), dtype=float)))
+        label = f"q_{place} [{volt}/{per}]" if of == "q" else f"p_{place} [-]"
+    return Panel(
+        label,
+        _fit(
+            shown(report.scheduled_by)[1],
+            report.points_rad,
+            designed,
+            fine,
+            np.asarray(polyval(fine, fitted), dtype=float),
+        ),
+    )
 
 
-def _fit(points_rad: Array, designed: Array, fine_rad: Array, fitted: Array) -> Sequence[Curve]:
+def _fit(factor: float, points_rad: Array, designed: Array, fine_rad: Array, fitted: Array) -> Sequence[Curve]:
     return (
-        Curve(np.degrees(fine_rad), fitted, "fitted", BLUE),
-        Curve(np.degrees(points_rad), designed, "designed", ORANGE, "", "o", 3.0),
+        Curve(factor * fine_rad, fitted, "fitted", BLUE),
+        Curve(factor * points_rad, designed, "designed", ORANGE, "", "o", 3.0),
     )
 
 

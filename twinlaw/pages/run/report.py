@@ -9,6 +9,7 @@ from design.report import DesignReport
 from design.trade_off import TradePoint
 from records.log import RunLog
 from records.quality import Colour, flag
+from records.text.units import label, shown, unit_of
 from records.verification import Verification
 from sim.columns import reference_name
 from sim.tracking import Tracking
@@ -67,23 +68,24 @@ def flight_plot(log: RunLog) -> str:
     inputs = [(_told(name), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
     panels = [
         Panel(
-            f"{name} [deg]",
+            f"{name} [{shown(output)[0]}]",
             (
-                Curve(log.t_s, np.degrees(log.column(output)), "measured", BLUE),
-                Curve(log.t_s, np.degrees(log.column(reference)), "reference", ORANGE, "--"),
+                Curve(log.t_s, shown(output)[1] * log.column(output), "measured", BLUE),
+                Curve(log.t_s, shown(output)[1] * log.column(reference), "reference", ORANGE, "--"),
             ),
         )
         for name, output, reference in angles
     ]
     panels += [
-        Panel(f"{name} [V]", (Curve(log.t_s, log.column(column), "", colour),)) for name, column, colour in inputs
+        Panel(f"{name} [{unit_of(column) or 1}]", (Curve(log.t_s, log.column(column), "", colour),))
+        for name, column, colour in inputs
     ]
     return stack(panels, "time [s]")
 
 
 def _told(column: str) -> str:
     """The column's name for a reader; the helicopter's by what it is of."""
-    return _NAMES.get(column, column.rsplit("_", 1)[0])
+    return _NAMES.get(column, label(column).partition(" [")[0])
 
 
 def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from records.quality import OVERSHOOT, STEADY_ERROR, Colour, Look, Quality, flag
+from records.quality import OVERSHOOT, STEADY_ERROR, STEADY_SHARE, Colour, Look, Quality, flag
+from records.text.units import unit_of, unit_suffix
 from sim.tracking import Tracking
 from twinlaw.pages.measured import settling_text
 from twinlaw.pages.page import Row
@@ -36,11 +37,11 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             str(entry.holds),
             f"{100 * entry.overshoot:.1f} %",
             settling_text(entry.settling_s),
-            f"{math.degrees(entry.steady_error_rad):.3f} deg",
-            f"{math.degrees(entry.mean_error_rad):.2f} deg",
-            f"{math.degrees(entry.push_rad):.2f} deg" if len(tracking) > 1 else "no other axis",
+            _told(entry, entry.steady_error_rad, 3),
+            _told(entry, entry.mean_error_rad),
+            _told(entry, entry.push_rad) if len(tracking) > 1 else "no other axis",
             entry.input,
-            f"{entry.activity.travel_V_s:.2f} V/s",
+            f"{entry.activity.travel_V_s:.2f} {unit_of(entry.input)}/s",
             f"{entry.activity.reversals_1_s:.1f} /s",
             colour_of(tracking_looks(entry)),
         )
@@ -54,9 +55,20 @@ def tracking_looks(entry: Tracking) -> tuple[Look, ...]:
         return ()
     return (
         OVERSHOOT.look(entry.output, 100.0 * entry.overshoot),
-        STEADY_ERROR.look(entry.output, math.degrees(entry.steady_error_rad)),
+        _steady(entry),
         *([flag(f"{entry.output} has a step that does not settle", Colour.RED)] if entry.settling_s is None else []),
     )
+
+
+def _told(entry: Tracking, value: float, digits: int = 2) -> str:
+    """An error as a person reads it: an angle's in degrees, anything else's in its unit."""
+    return f"{math.degrees(value):.{digits}f} deg" if entry.is_angle else f"{value:.3g} {unit_of(entry.output)}"
+
+
+def _steady(entry: Tracking) -> Look:
+    if entry.is_angle:
+        return STEADY_ERROR.look(entry.output, math.degrees(entry.steady_error_rad))
+    return STEADY_SHARE.look(entry.output, 100.0 * entry.steady_error_rad / entry.step_rad if entry.step_rad else 0.0)
 
 
 def flight_quality(tracking: Sequence[Tracking], further: Sequence[Look] = ()) -> Quality:
@@ -66,4 +78,19 @@ def flight_quality(tracking: Sequence[Tracking], further: Sequence[Look] = ()) -
 
 def tracking_facts(tracking: Sequence[Tracking]) -> dict[str, Any]:
     """The same for a program, by output."""
-    return {"tracking": {entry.output: asdict(entry) for entry in tracking}}
+    return {"tracking": {entry.output: _facts(entry) for entry in tracking}}
+
+
+def _facts(entry: Tracking) -> dict[str, Any]:
+    """By names in the units of this output and its input."""
+    units = {"_rad": unit_suffix(entry.output), "_V_s": f"{unit_suffix(entry.input)}_s".lstrip("_")}
+
+    def own(name: str) -> str:
+        ending = next((ending for ending in units if name.endswith(ending)), None)
+        return name if ending is None else f"{name.removesuffix(ending)}_{units[ending]}".rstrip("_")
+
+    found = asdict(entry)
+    return {
+        **{own(name): value for name, value in found.items()},
+        "activity": {own(name): value for name, value in found["activity"].items()},
+    }

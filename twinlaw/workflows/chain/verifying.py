@@ -7,6 +7,7 @@ from pathlib import Path
 
 from codegen.law import generate_law
 from codegen.law_equations import state_words
+from codegen.scales import fastest, room, widest_reference
 from design.structure import stops
 from logcheck.integrity import OTHER_UNITS, as_read, examine
 from logcheck.integrity import demand as demand_log
@@ -29,7 +30,7 @@ from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_known_log
 from verification.equality import BatchStepper, compare
 from verification.host_law import HostLaw
-from verification.ranges import FASTEST_RAD_S, Motion
+from verification.ranges import Motion
 from verification.replay import Replay, replay_of, replayed_equality
 from verification.static_bound import kept_bound
 from verification.stimuli import Stimulus
@@ -142,13 +143,14 @@ def sensor_cycles(table: ControllerTable, image: FirmwareImage) -> int:
 
 
 def motion_of(bound: BoundPlant, table: ControllerTable) -> Motion:
-    """Each axis within its stops, or a quarter turn beyond its references where it has none, no faster than FASTEST_RAD_S."""
+    """Each axis within its stops, or where it has none as far beyond its references, and no faster, than codegen.scales says."""
     limits_rad = []
     for loop, axis in zip(table.loops, table.axes, strict=True):
         stop_rad = max(map(abs, stops(bound, loop)))
-        widest_rad = max(abs(axis.reference_min_rad), abs(axis.reference_max_rad)) + math.pi / 2.0
+        widest_rad = widest_reference(axis) + room(loop, axis)
         limits_rad.append(stop_rad if math.isfinite(stop_rad) else widest_rad)
-    return Motion(tuple(limits_rad), (FASTEST_RAD_S,) * len(limits_rad))
+    each = zip(table.loops, table.axes, strict=True)
+    return Motion(tuple(limits_rad), tuple(fastest(loop, axis, table.sample_period_s) for loop, axis in each))
 
 
 def demand(verification: Verification) -> None:

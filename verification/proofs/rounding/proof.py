@@ -83,7 +83,7 @@ def tighter_bound(bound: RoundingBound, result: ProofResult) -> RoundingBound:
     smaller = {name: min(known, result.figures.get(f"{name}_V", math.inf)) for name, known in bound.volts.items()}
     if result.outcome != "proved" or smaller == bound.volts:
         return bound
-    return RoundingBound(smaller, f"the smaller of: Gappa script; {bound.method}")
+    return RoundingBound(smaller, f"the smaller of: Gappa script; {bound.method}", bound.units)
 
 
 def ask_gappa(script: str) -> float:

@@ -1,0 +1,126 @@
+"""Loops of other units than rad and V go the whole way: a carriage's position, a coil's current, a shaft's torque, a tank's level."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.own_plants import NO_AXIS, OwnPlant
+from tests.soak import sampled
+from twinlaw.command import main
+
+PLANTS = Path(__file__).parents[3] / "plants"
+
+EMPS = """
+[design]
+sample_period_s = 0.005
+
+[design.carriage]
+poles_rad_s = [-10.0, -12.0, -15.0, -20.0]
+prefilter_time_constant_s = 0.1
+reference_min_m = -0.1
+reference_max_m = 0.1
+"""
+TORQUE = """
+[design.shaft]
+poles_rad_s = [-3.0, -4.0, -5.0, -6.0]
+prefilter_time_constant_s = 0.3
+reference_min_rad = -0.3
+reference_max_rad = 0.3
+u_min_Nm = -1.5
+u_max_Nm = 1.5
+
+[board]
+theta_rad = { encoder = ["PA0", "PA1"] }
+tau_Nm = { pwm = "PA8", direction = "PB0", full_scale_Nm = 2.0 }
+"""
+COIL = """
+[design]
+sample_period_s = 0.002
+
+[design.coil]
+poles_rad_s = [-40.0, -60.0]
+prefilter_time_constant_s = 0.02
+reference_min_A = -3.0
+reference_max_A = 3.0
+
+[design.margins]
+min_delay_margin_s = 0.005
+
+[board]
+i_A = { analogue = "PA4", zero_scale_A = -5.12, full_scale_A = 5.12 }
+u_V = { pwm = "PA8", direction = "PB0" }
+"""
+# A vessel that a pump fills and that leaks: A h' = k u - c h.
+TANK_PLANT = OwnPlant(
+    {"A": (0.02, 0.001, "m^2"), "k": (5e-5, 5e-6, "m^3 s^-1 V^-1"), "c": (4e-4, 4e-5, "m^2 s^-1")},
+    {"level_m": 1e-4},
+    """
+h, u = symbol("level_m"), symbol("pump_V")
+return Model(
+    name="NAME", states=(h,), inputs=(u,), outputs={"level_m": h}, parameters=PARAMETERS,
+    rates={h: (p["k"] * u - p["c"] * h) / p["A"]}, axes=(), input_limits={u: (0, 12)},
+    places=Places(inputs={"pump": InputPlace(u, "V", 12.0)}, sensors={"gauge": SensorPlace("level_m", "m", 1.0)}),
+)
+""",
+)
+TANK = """
+[design]
+sample_period_s = 0.05
+
+[design.vessel]
+poles_rad_s = [-0.3, -0.4]
+prefilter_time_constant_s = 2.0
+reference_min_m = 0.2
+reference_max_m = 1.0
+"""
+
+
+def written(name: str, folder: Path) -> Path:
+    """The plant's file with its wishes."""
+    if name in ("coil", "tank"):
+        path = (NO_AXIS if name == "coil" else TANK_PLANT).write(folder, name)
+        text = path.read_text().replace("resolution_A = 0.001", "resolution_A = 0.0025")
+        path.write_text(text + (COIL if name == "coil" else TANK))
+        return path
+    model, wishes = {"emps": ("emps", EMPS), "torque": ("torque_limited_pendulum", TORQUE)}[name]
+    path = folder / f"{name}.toml"
+    path.write_text((PLANTS / f"{model}.toml").read_text() + wishes)
+    return path
+
+
+@pytest.mark.parametrize("name", sampled(["emps", "coil", "torque", "tank"], keep=["emps", "coil"]))
+def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Truth: 100 000 steps in both arithmetics, no bit differs; the image has flown, and the flight stayed with its references."""
+    assert main(["run", "--plant", str(written(name, tmp_path)), "--out", str(tmp_path / "b"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    found = json.loads((tmp_path / "b" / "verification.json").read_text())
+    assert said["passed"]
+    assert len(found["equality"]) == 4
+    assert all(row["steps"] >= 100_000 and row["mismatches"] == 0 for row in found["equality"])
+    header = (tmp_path / "b" / "generated" / "law.h").read_text()
+    table = json.loads((tmp_path / "b" / "controller.json").read_text())
+    macro, key = {
+        "emps": ("LAW_Q_REF_MAX_M", "reference_max_m"),
+        "coil": ("LAW_I_REF_MAX_A", "reference_max_A"),
+        "torque": ("LAW_TAU_MAX_NM", "u_max_Nm"),
+        "tank": ("LAW_LEVEL_REF_MAX_M", "reference_max_m"),
+    }[name]
+    assert macro in header
+    assert key in str(table)
+
+
+def test_a_schedule_by_what_is_no_position_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant = written("coil", tmp_path)
+    plant.write_text(
+        plant.read_text().replace("[design]\n", '[design]\nschedule = "i_A"\ni_min_A = -3.0\ni_max_A = 3.0\n')
+    )
+    assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 2
+    assert "the position of an axis" in capsys.readouterr().err
+
+
+def test_a_key_in_another_unit_is_refused_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant = written("emps", tmp_path)
+    plant.write_text(plant.read_text().replace("reference_min_m", "reference_min_rad"))
+    assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 2
+    assert "reference_min_m" in capsys.readouterr().err
