@@ -239,7 +239,7 @@ def _scheduling(section: Mapping[str, Any], loops: tuple[Loop, ...], where: str)
 
 
 def _schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, where: str) -> Schedule:
-    if measured_axis(bound.model, loop) is None:
+    if measured_axis(bound.nominal, loop) is None:
         expected = "an output that is the position of an axis: only there can the plant be put to rest at a value of it"
         raise BadInput("schedule", f"{where}.schedule", loop.output, expected, "leave it out for no schedule")
     low_key, high_key = _range_keys(loop)
