@@ -12,7 +12,7 @@ from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant
 from sim.composition.build import switched_model
 from sim.composition.switch import switch_name
-from sim.effect import coefficient
+from sim.effect import Role, coefficient
 from sim.kernel.generate import model_header
 from sim.kernel.kernel import C_DIR
 from sim.kernel.reference import reference
@@ -100,7 +100,8 @@ def numbers(plant: BoundPlant, model: Model, on: set[str]) -> np.ndarray:
     p[: len(plant.p)] = plant.p
     for name in carried(plant.plant.name):
         for parameter, symbol in zip(effects[name].parameters, effects[name].symbols, strict=True):
-            p[places[str(symbol)]] = parameter.reference or 0.5 * parameter.upper
+            begins = parameter.role is Role.BEGINNING  # this run does so at 0 s
+            p[places[str(symbol)]] = 0.0 if begins else parameter.reference or 0.5 * parameter.upper
         if name in on:
             p[places[switch_name(effects[name])]] = 1.0
     return p

@@ -243,7 +243,7 @@ WRONG = [
     ({"theta_rad": {"analogue": "PA4"}}, r"board.theta_rad: key 'zero_scale_rad'"),
     ({"theta_rad": POTENTIOMETER["theta_rad"] | {"full_scale_rad": -2.048}}, r"got -2.048 rad at both ends"),
     ({"theta_rad": POTENTIOMETER["theta_rad"]}, r"step of the sensor: got resolution_rad = 0.0011.*expected 0.001 rad"),
-    ({"theta_rad": SHORT}, r"reference range: got 0.1 .. 0.7 rad.*between -4.0\d+ and 0.69\d+ rad, the ends of .* PA4"),
+    ({"theta_rad": SHORT}, r"reference range: got 0.1 .. 0.7 rad.*from -4.0\d+ to 0.69\d+ rad, the ends of .* PA4"),
     ({"theta_rad": SHORT | {"analogue": "PA8"}}, r"analogue input: got PA8"),
     ({"u_V": {"pwm": "PA8", "full_scale_V": 0}}, r"board.u_V.full_scale_V: number: got 0"),
     (
