@@ -79,8 +79,10 @@ def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LAT
     if found is None:
         return _unseen(commands)
     refused = found.follows and found.slip.way in ways and found.gain > decisions.ROWS_REFUSED
-    if not refused or most_by_an_effect(short, usual) > found.gain:
+    if not refused:
         return (_note(case, found),)
+    if most_by_an_effect(short, usual) > found.gain:
+        return ()
     remedy = ", or ".join(_move(case, slip) for slip in (found.slip, *found.alike))
     if found.slip.way == EARLY:
         remedy += "; where the rig itself is late, `twinlaw diagnose` adds that to its model"
