@@ -16,13 +16,10 @@ Array = NDArray[np.float64]
 
 STEADY_S = 1.0  # the error at rest is the mean over this long before the next change of any reference
 SHORTEST_HOLD_S = 3.0  # a reference held for less has no steady part to judge
-SETTLED_RAD = math.radians(
-    1.0
-)  # a step has settled where the angle stays so near; seed 001 calls errors of 0.5 to 1 deg good
-
-
-# Of an output that is no angle, as a share of its largest step: two per cent is what the field calls settled.
-SETTLED_SHARE, LEFT_SHARE = 0.02, 0.2
+# A step has settled where the angle stays so near; seed 001 calls errors of 0.5 to 1 deg good.
+SETTLED_RAD = math.radians(1.0)
+SETTLED_SHARE = 0.02  # of its largest step, for what is no angle: what the field calls settled
+LEFT_SHARE = 0.2  # likewise, as LEFT_RAD is for an angle: ten times what counts as settled; no flight set it
 
 
 @dataclass(frozen=True)
@@ -30,11 +27,11 @@ class Tracking:
     """One output over a flight, as its sensor shows it.
 
     `overshoot` is the largest excess beyond a new reference, as a share of the change that led to it; `settling_s` the longest time
-    from such a change until it stays within SETTLED_RAD, or of no angle
-    SETTLED_SHARE, None where it does not before the next one; `steady_error_rad` the
-    largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole flight; `push_rad` the
-    largest |error| in the holds that another output's change began: what the axes do to each other. `activity` is what the output's
-    own input did for that over the whole flight, `step_rad` the output's largest step. `_rad` and `_V` are the units of output and input.
+    from such a change until it stays within SETTLED_RAD, or of no angle SETTLED_SHARE, None where it does not before the next one;
+    `steady_error_rad` the largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole
+    flight; `push_rad` the largest |error| in the holds that another output's change began: what the axes do to each other. `activity` is
+    what the output's own input did for that over the whole flight, `step_rad` the output's largest step. `_rad` and `_V` are the units of
+    output and input.
     """
 
     output: str

@@ -76,8 +76,9 @@ def detect(
         "parameter_furthest": moved_tail(case, linearisation.fit),
     }
     p = min(1.0, len(chances) * min(chances.values()))
-    moved = min(chances["parameters_together"], chances["parameter_furthest"]) <= decisions.ALARM / len(chances)
-    rules = tuple(_rule(name, chance, len(chances)) for name, chance in chances.items())
+    limit = decisions.ALARM / len(chances)  # each test has its share of the level (Bonferroni)
+    moved = min(chances["parameters_together"], chances["parameter_furthest"]) <= limit
+    rules = tuple(_rule(name, chance, limit) for name, chance in chances.items())
     return Detection(p, tail, largest, moved, FormScores(tuple(found), by_form, null_forms.mean(axis=1)), rules)
 
 
@@ -87,9 +88,8 @@ def _allowed(case: Case) -> float:
     return decisions.ALLOWED_GAIN if rubs else 0.0
 
 
-def _rule(name: str, chance: float, tests: int) -> Decision:
-    """One of so many tests of "no gap"; each has its share of the level (Bonferroni)."""
-    limit = decisions.ALARM / tests
+def _rule(name: str, chance: float, limit: float) -> Decision:
+    """One test of "no gap"."""
     return held_against(name, "logs", chance, limit, decisions.ALARM.unit, "gap" if chance <= limit else "no gap")
 
 

@@ -114,9 +114,8 @@ def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -
     for name, values in hypothesis.effects.items():
         if name in compiled.names:
             effect = library.effects[name]
-            known = {
-                parameter.symbol: case.begins_s for parameter in effect.parameters if parameter.role is Role.BEGINNING
-            }
+            begins = effect.having(Role.BEGINNING)
+            known = {} if begins is None else {begins.symbol: case.begins_s}
             for symbol, value in {**values, **known}.items():
                 p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if effect.reads_late else value
     for output in library.bound.model.outputs:

@@ -1,15 +1,21 @@
 """A gap matters by what its explanation predicts, not by how certain many rows make it."""
 
+import numpy as np
 import pytest
 
 from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.weighing import Weighed
+from diagnosis.detect.detection import Detection, FormScores
+from diagnosis.detect.linearisation import Scores
+from diagnosis.detect.replicas import Tail
+from diagnosis.diagnose import of_consequence
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.result import Judged, Seen
 from tests.diagnosis.arm import arm_case, arm_log
 
 
@@ -75,3 +81,18 @@ def test_what_is_left_is_compared_by_its_own_evidence() -> None:
     found, _ = without_idle(case, Weighed((both, other, alone), (0.6, 0.2, 0.1), 0.1, 0.0, 10.0), [alone, other, both])
     assert [entry.effects for entry in found.fitted] == [("theta_sensor.scale",), ("arm.coulomb",)]
     assert found.probabilities == pytest.approx((0.6, 0.3))
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_file(moved: bool) -> None:
+    # Truth: a reading late by 1 ms, which no prediction shows. A plant that follows its logs as stated lacks nothing that matters.
+    values = {"tau": 1e-3, "jitter": 0.0}
+    case = arm_case(arm_log({"theta_sensor.delay": values}, seed=76))
+    plain = as_fitted(case, nominal_fit(case))
+    late = explained(case, plain, "theta_sensor.delay", values)
+    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+    detection = Detection(1e-9, Tail(5.0, 1.0), 100.0, moved, FormScores((), empty, np.zeros(0)))
+    seen = Seen(case, None, plain, object(), (), None, detection)  # type: ignore[arg-type]
+    weighed = Weighed((late,), (0.9,), 0.1, 0.0, 10.0)
+    judged = Judged(object(), None, weighed, late, None, ())  # type: ignore[arg-type]
+    assert of_consequence(seen, judged)[1] is moved
