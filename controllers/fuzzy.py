@@ -18,9 +18,10 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from codegen.law_frame import LawNumbers, Sample
-from controllers.designing import Points, axis_table, law_table
-from controllers.equation_controller import EquationController
-from controllers.frame import AxisNumbers, Decisions
+from controllers.equations.designing import Points, axis_table, law_table
+from controllers.equations.equation_controller import EquationController
+from controllers.equations.frame import AxisNumbers, Decisions
+from controllers.equations.tuned import Numbers, OpenNumber, Tunable, tuned
 from controllers.fuzzy_sets import (
     AZIMUTH,
     ELEVATION,
@@ -32,7 +33,6 @@ from controllers.fuzzy_sets import (
     Wording,
     error_sets,
 )
-from controllers.tuned import Numbers, OpenNumber, Tunable, tuned
 from records.law_table import LawTable
 from records.table import lag_gain
 

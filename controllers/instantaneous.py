@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from codegen.law_equations import Scheduled, differences, drive, moved
 from codegen.law_frame import Sample
-from controllers.designing import Points, axis_table, law_table
-from controllers.equation_controller import EquationController
+from controllers.equations.designing import Points, axis_table, law_table
+from controllers.equations.equation_controller import EquationController
 from controllers.linearisation import (
     COSINE,
     NEWTON_STEPS,

@@ -8,7 +8,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 from codegen.law import generate_law
 from controllers.controller import Controller
-from controllers.equation_controller import EquationController
+from controllers.equations.equation_controller import EquationController
 from controllers.table import CONTROLLERS
 from records.errors import BadInput
 from records.law_table import SCHEMA, AxisTable, FlownTable, LawTable

@@ -23,9 +23,9 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from codegen.law_frame import LawNumbers, Sample, polynomial
-from controllers.designing import Points, axis_table, law_table
-from controllers.equation_controller import EquationController
-from controllers.frame import AxisNumbers, Decisions
+from controllers.equations.designing import Points, axis_table, law_table
+from controllers.equations.equation_controller import EquationController
+from controllers.equations.frame import AxisNumbers, Decisions
 from controllers.lqg_gains import WEIGHTS, gains_at
 from design.schedule import fit, stored_fit
 from records.law_table import LawTable

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from codegen.law_frame import LawNumbers, Sample
-from controllers.designing import Points, axis_table, law_table
-from controllers.equation_controller import EquationController
-from controllers.frame import AxisNumbers, Decisions
+from controllers.equations.designing import Points, axis_table, law_table
+from controllers.equations.equation_controller import EquationController
+from controllers.equations.frame import AxisNumbers, Decisions
+from controllers.equations.tuned import Numbers, OpenNumber, Tunable, tuned
 from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
-from controllers.tuned import Numbers, OpenNumber, Tunable, tuned
 from design.table import limits_V, plain
 from records.law_table import LawTable
 from records.table import AXES, lag_gain

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from design.coupled import Coupling, coupled_poles, coupling
+from design.analysis.coupled import Coupling, coupled_poles, coupling
+from design.analysis.margins import Margins, margins
+from design.analysis.migration import Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of
+from design.analysis.rounding import FLOAT32, Rounding
 from design.direct_form import DeltaForm
 from design.discretise import SampledPlant, sample
 from design.linearise import LinearPlant, linearise, of_loops, subsystem
 from design.loop import PlantPolynomials, Poles, controller_poles, open_loop, plant_polynomials
-from design.margins import Margins, margins
-from design.migration import Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of
 from design.operating_points import DesignPoints, equilibria, grid, rest_V
-from design.rounding import FLOAT32, Rounding
 from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
 from design.settings import AxisSettings, DesignSettings
 from records.loops import LOOPS, Loop

@@ -32,7 +32,7 @@ min_phase_margin_rad = 0.175
 min_delay_margin_s = 0.02
 min_relative_gain = 0.5
 
-[design.tuned]                       what other controllers than this leave open: controllers/tuned.py
+[design.tuned]                       what other controllers than this leave open: controllers/equations/tuned.py
 """
 
 import math

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from design.analysis.rounding import FLOAT32, Rounding
 from design.gate import check
 from design.operating_points import DesignPoints, design_points, rest_V
 from design.report import DesignReport, flown_poles, make_report
-from design.rounding import FLOAT32, Rounding
 from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
 from design.settings import AxisSettings, DesignSettings
 from records.errors import BadInput

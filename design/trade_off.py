@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from design.analysis.margins import margins
 from design.loop import open_loop
-from design.margins import margins
 from design.operating_points import DesignPoints, design_points
 from design.schedule import evaluate, schedule_of
 from design.settings import AxisSettings, DesignSettings

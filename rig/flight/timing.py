@@ -3,7 +3,7 @@
 import statistics
 
 from records.protocol import PROTOCOL
-from records.validation import LineTiming
+from records.verification import LineTiming
 from rig.flight.loop_session import LoopSession
 from rig.link.client import BoardClient
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial.polynomial import polyval
 
 from codegen.fixed.controllers import fixed_controllers
-from design.rounding import FLOAT32
+from design.analysis.rounding import FLOAT32
 from records.errors import BadInput
 from records.table import changed_axis
 from tests.law_tables import ce150_table

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from controllers.exact import Doubles
-from controllers.frame import numbers_of
+from controllers.equations.exact import Doubles
+from controllers.equations.frame import numbers_of
 from controllers.fuzzy import Fuzzy
 from controllers.fuzzy_sets import AZIMUTH, ELEVATION, ERROR_LABELS, FAR, Wording
 from sim.simulate import simulate

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from controllers.designing import points_of
+from controllers.equations.designing import points_of
 from controllers.lqg_gains import WEIGHTS, gains_at, sampled
 from design.settings import read_settings
 from records.table import AXES, changed_axis

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.designing import points_of
+from controllers.equations.designing import points_of
 from controllers.pid_tuning import LARGEST_SENSITIVITY
 from design.settings import read_settings
 from records.table import AXES, changed_axis

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from design.coupled import coupled_poles
+from design.analysis.coupled import coupled_poles
 from design.direct_form import DeltaForm
 from design.discretise import SampledPlant, sample
 from design.linearise import linearise

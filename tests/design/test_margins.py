@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from design.analysis.margins import margins
 from design.loop import closed_loop_poles, open_loop, slowest
-from design.margins import margins
 from design.schedule import evaluate, schedule_of
 from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, polynomials, settings_for, table_for, wide_angles
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from design.analysis.margins import margins
 from design.direct_form import DirectForm, controller_poles_z, to_delta, to_direct
 from design.linearise import linearise, subsystem
 from design.loop import closed_loop_poles, open_loop, slowest
-from design.margins import margins
 from design.pole_placement import FREE_DEGREES, FreeDegree, characteristic, place, poles_z, sylvester
 from design.schedule import evaluate, schedule_of
 from design.transfer import transfer_function

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from design import report as report_module
+from design.analysis.migration import STORAGES
 from design.gate import check
-from design.migration import STORAGES
 from design.operating_points import design_points
 from design.report import ANGLES_BETWEEN, make_report
 from design.settings import MarginLimits, read_settings

@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from design.analysis.margins import frequency_response
 from design.loop import closed_loop_poles, open_loop
-from design.margins import frequency_response
 from design.operating_points import PointDesign, design_point
 from design.settings import DesignSettings, read_settings
 from design.trade_off import trade_off

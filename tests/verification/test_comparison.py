@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.designing import points_of
+from controllers.equations.designing import points_of
 from controllers.pid import CONTROLLER as PID
 from controllers.pid import OPEN as PID_OPEN
 from design.settings import read_settings

@@ -11,7 +11,7 @@ from controllers import loading
 from records.errors import VerificationFailed
 from records.files import write_atomic
 from records.log import save_log
-from records.validation import validation_text
+from records.verification import validation_text
 from sim.wiring import wiring
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import validation_rows

@@ -6,8 +6,8 @@ from typing import Any
 
 from codegen.protocol_source import protocol_source
 from controllers.controller import Controller
-from controllers.designing import points_of
-from controllers.equation_controller import EquationController
+from controllers.equations.designing import points_of
+from controllers.equations.equation_controller import EquationController
 from controllers.instantaneous import CONTROLLER as INSTANTANEOUS
 from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.frame import numbers_of
+from controllers.equations.frame import numbers_of
 from controllers.instantaneous import EQUATIONS
 from design.direct_form import DeltaForm, DirectForm, to_delta
 from design.discretise import sample

@@ -13,10 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.designing import Points
-from controllers.equation_controller import EquationController
-from controllers.source import tunable_law
-from controllers.tuned import OpenNumber, Tunable
+from controllers.equations.designing import Points
+from controllers.equations.equation_controller import EquationController
+from controllers.equations.source import tunable_law
+from controllers.equations.tuned import OpenNumber, Tunable
 from records.errors import BadInput
 from records.table import AXES
 from verification.comparison.flights import fly_plan

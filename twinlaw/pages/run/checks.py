@@ -1,8 +1,7 @@
 """What was checked as rows of text: a verification, a board's validation, and the memory that an image takes."""
 
 from records.board import STM32G071, Board
-from records.validation import Validation
-from records.verification import Verification
+from records.verification import Validation, Verification
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Row
 from twinlaw.pages.run.design import degrees

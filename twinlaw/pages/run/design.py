@@ -4,7 +4,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
-from design.migration import SlowestPole
+from design.analysis.migration import SlowestPole
 from design.report import AxisReport, DesignReport
 from records.text.units import said
 from twinlaw.pages.page import Row

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from codegen.fixed.controllers import fixed_controllers
 from codegen.fixed.twin import FixedTwin
 from codegen.twin import Float32Twin
-from design.rounding import FLOAT32, Rounding
+from design.analysis.rounding import FLOAT32, Rounding
 from records.table import ControllerTable
 from records.verification import RoundingBound
 from verification.equality import BatchStepper

@@ -7,7 +7,7 @@ from controllers import loading
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.protocol import protocol_of
-from records.validation import Validation
+from records.verification import Validation
 from rig.flight.controller import BoardController
 from rig.flight.line_law import LineLaw
 from rig.flight.timing import line_timing

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from design.analysis.migration import STORAGES, stored
 from design.direct_form import DeltaForm
-from design.migration import STORAGES, stored
 from design.schedule import evaluate, schedule_of
 from records.table import ControllerTable
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from codegen.law_frame import AxisEquations, LawInput, law_reset, law_step
 from codegen.twin import Float32Lanes, Float32Scalars, Float32Twin
-from controllers.frame import numbers_of
+from controllers.equations.frame import numbers_of
 from records.law_table import LawTable
 
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from codegen.law_frame import AxisEquations
 from codegen.twin import Float32Twin
-from controllers.designing import Points, points_of
-from controllers.exact import EquationLaw, EquationTwin
-from controllers.source import generate
-from controllers.tuned import Tunable
+from controllers.equations.designing import Points, points_of
+from controllers.equations.exact import EquationLaw, EquationTwin
+from controllers.equations.source import generate
+from controllers.equations.tuned import Tunable
 from design.settings import DesignSettings
 from records.law_table import LawTable, law_table_text
 from sim.bind import BoundPlant

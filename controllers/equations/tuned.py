@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from controllers.designing import Points
+from controllers.equations.designing import Points
 from records.law_table import LawTable
 from records.table import AXES
 from records.text import checks

@@ -11,8 +11,8 @@ from codegen.law import c_environment, frame_axis, frame_context, region_text, s
 from codegen.law_frame import AxisEquations
 from codegen.numbers import c_float32
 from codegen.self_test import self_test
-from controllers.exact import EquationTwin
-from controllers.frame import float32_polynomial
+from controllers.equations.exact import EquationTwin
+from controllers.equations.frame import float32_polynomial
 from records.law_table import LawTable
 
 

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from design.analysis.margins import LOWEST_RAD_S
 from design.direct_form import DeltaForm
 from design.discretise import SampledPlant
 from design.loop import Poles, controller_polynomials, to_rad_s
-from design.margins import LOWEST_RAD_S
 
 Array = NDArray[np.float64]
 
