@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections import Counter
 from collections.abc import Iterator
 from importlib.metadata import packages_distributions
 from pathlib import Path
@@ -115,6 +116,19 @@ def test_no_generated_or_fetched_file_is_tracked() -> None:
     if not tracked:
         pytest.skip("this copy of the project is no git checkout")
     assert not [name for name in tracked if name.endswith((".so", ".elf", ".bin", ".mat", ".pyc"))]
+
+
+MOST_FILES = 20
+CATALOGUES = {"sim/effects", "twinlaw/verbs"}  # a file a variant: they may grow
+
+
+def test_a_folder_of_sources_can_be_read_at_a_glance() -> None:
+    sources = [ROOT / line for line in _run("git", "ls-files", *PACKAGES, "firmware").stdout.split()]
+    if not sources:
+        pytest.skip("this copy of the project is no git checkout")
+    code = [path for path in sources if path.suffix in {".py", ".c", ".h", ".S"} and path.exists()]
+    held = Counter(path.parent.relative_to(ROOT).as_posix() for path in code)
+    assert {folder: count for folder, count in held.items() if count > MOST_FILES and folder not in CATALOGUES} == {}
 
 
 @pytest.mark.parametrize("package", ["diagnosis", "logcheck", "replay"])
