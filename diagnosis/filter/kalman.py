@@ -1,4 +1,4 @@
-"""The extended Kalman filter of diagnosis/c, compiled with a plant's equations: whitened innovations and their slopes."""
+"""The extended Kalman filter of c/, compiled with a plant's equations: whitened innovations and their slopes."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,7 @@
-/* Extended Kalman filter over a plant's equations, with the slopes of its whitened innovations by the parameters.
+/* Extended Kalman filter over a plant's equations.
  *
- * The mean goes the kernel's way, with located friction and stops; the covariance and the slopes go by the Jacobians at the middle of
- * each step, second order in its length, of which fast states get pieces. The slopes leave out how the gain itself moves.
+ * The mean goes the kernel's way, with located friction and stops; the covariance, and the slopes by parameters of slopes.h, go by the
+ * Jacobians at the middle of each step, second order in its length, of which fast states get pieces.
  */
 #define LANES 1
 #include "lane.h"
@@ -13,24 +13,15 @@
 #include "events.h"
 #include "step.h"
 
-#include "filter.h"
+#include "slopes.h"
+#include "states.h"
 
-#define N N_STATES
 #define UNSURE 10.0 /* times what friction stops in a step, beyond which a speed's spread is no rest */
 #define PIECES_ALLOWED 200 /* of the motion between events, */
 #define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
 
 #define FASTEST 0.5     /* of a state's own time constant that a piece of a step may last, */
 #define MOST_PIECES 8.0 /* but for so many: beyond, nothing is left of it anyway */
-
-#define BLOCK 8    /* columns worked on at a time, so that they stay in registers */
-#define BLOCKS (MAX_COLUMNS / BLOCK)
-#define PENDING 32 /* measurements whose slopes are multiplied at a time */
-
-typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_alias));
-#define ROW ((N + BLOCK - 1) / BLOCK) /* blocks */
-#define WIDTH (ROW * BLOCK)
-typedef double matrix[N][WIDTH] __attribute__((aligned(sizeof(block)))); /* N by N, its rows filled up with zeros to whole blocks */
 
 /* Entries that are identically zero are never written, so these are emptied once a run. */
 typedef struct {
@@ -44,63 +35,25 @@ typedef struct {
     int64_t pieces;
     jacobians j;
     matrix P, A, square, F, FP, PF; /* the last five are worked with within a step */
-    /* States of effects that are off: their rows and columns of matrices are 0, but F's are those of 1, and are left alone. */
-    bool sleeps[N], empty[ROW];
-    int order[N], awake; /* the states that do not sleep */
-    int pending;
-    /* By blocks of columns: slopes of the state, whitened slopes not yet multiplied, the lower half of their products, and those with
-     * the innovations; what the plant's equations say of the columns. Columns beyond the request's are 0. */
-    block S[BLOCKS][N], waiting[BLOCKS][PENDING], gram[BLOCKS][MAX_COLUMNS], pull[BLOCKS];
-    block E[N_OUTPUTS][BLOCKS], D[N][BLOCKS];
+    /* Rows and columns of matrices are 0 where a state sleeps, but F's are those of 1, and are left alone. */
+    awake_states states;
+    filter_slopes slopes;
 } filter_state;
-
-/* What never sleeps the compiler knows. */
-#define AWAKE(i) (STATE_SWITCH[i] < 0 || !at->sleeps[i])
-#define FILLED(b) (!at->empty[b])
-
-static int blocks(const filter_request *request) { return (request->columns + BLOCK - 1) / BLOCK; }
-
-/* The request's columns of a row of slopes by all parameters. */
-static void gather(const filter_request *request, const double *row, block *to)
-{
-    double *const entry = (double *)to;
-    for (int k = 0; k < request->columns; k++)
-        entry[k] = row[request->column[k]];
-}
 
 static void start(filter_state *at, filter_request *request)
 {
     at->request = request;
     at->j = (jacobians){{0.0}, {0.0}, {0.0}, {0.0}};
     model_constants(request->p, at->c);
-    at->awake = 0;
-    for (int b = 0; b < ROW; b++)
-        at->empty[b] = true;
+    wake(&at->states, request);
+    start_slopes(&at->slopes, request);
     for (int i = 0; i < N; i++) {
-        at->sleeps[i] = STATE_SWITCH[i] >= 0 && request->p[STATE_SWITCH[i] < 0 ? 0 : STATE_SWITCH[i]] == 0.0;
-        at->empty[i / BLOCK] &= at->sleeps[i];
-        if (!at->sleeps[i])
-            at->order[at->awake++] = i;
         at->body.x[i] = request->x0[i];
         for (int j = 0; j < WIDTH; j++) {
             at->A[i][j] = at->square[i][j] = at->FP[i][j] = at->PF[i][j] = 0.0;
             at->F[i][j] = i == j;
-            at->P[i][j] = i == j && !at->sleeps[i] ? request->p0[i] : 0.0;
+            at->P[i][j] = i == j && !at->states.sleeps[i] ? request->p0[i] : 0.0;
         }
-        for (int b = 0; b < blocks(request); b++)
-            at->S[b][i] = (block){0.0};
-    }
-    at->pending = 0;
-    for (int b = 0; b < blocks(request); b++) {
-        for (int m = 0; m < PENDING; m++)
-            at->waiting[b][m] = (block){0.0};
-        for (int k = 0; k < MAX_COLUMNS; k++)
-            at->gram[b][k] = (block){0.0};
-        at->pull[b] = (block){0.0};
-        for (int o = 0; o < N_OUTPUTS; o++)
-            at->E[o][b] = (block){0.0};
-        for (int i = 0; i < N; i++)
-            at->D[i][b] = (block){0.0};
     }
     for (int a = 0; a < N_AXES; a++)
         if (request->locked[a]) {
@@ -119,67 +72,26 @@ static void apply(filter_state *at, int64_t step)
         at->u[j] = lane_clamp(at->request->u[step * N_INPUTS + j], at->c[INPUT_LOWER[j]], at->c[INPUT_UPPER[j]]);
 }
 
-/* gram += W'W of the slopes that wait, four rows of it at a time. */
-static void multiply(filter_state *at)
-{
-    for (int k = 0; k < at->request->columns; k += 4) {
-        const double *const left = (const double *)at->waiting[k / BLOCK] + k % BLOCK;
-        for (int b = 0; b <= k / BLOCK; b++) {
-            block sum[4] = {{0.0}};
-            for (int m = 0; m < at->pending; m++)
-                for (int i = 0; i < 4; i++)
-                    sum[i] += left[m * BLOCK + i] * at->waiting[b][m];
-            for (int i = 0; i < 4; i++)
-                at->gram[b][k + i] += sum[i];
-        }
-    }
-    at->pending = 0;
-}
-
-/* The slopes of a measurement's innovation, and what its gain takes off those of the state; kept whitened where it has a place. */
-static void correct_slopes(filter_state *at, const double *H, const block *E, const double *K, double nu, double scale, int64_t place)
-{
-    const filter_request *const r = at->request;
-    for (int b = 0; b < blocks(r); b++) {
-        block slope = -E[b];
-        for (int i = 0; i < N; i++)
-            if (H[i] != 0.0)
-                slope -= H[i] * at->S[b][i];
-        for (int n = 0; n < at->awake; n++)
-            at->S[b][at->order[n]] += K[at->order[n]] * slope;
-        if (place < 0)
-            continue;
-        slope *= scale;
-        at->waiting[b][at->pending] = slope;
-        at->pull[b] += slope * (nu * scale);
-        if (r->dw)
-            for (int k = b * BLOCK; k < r->columns && k < (b + 1) * BLOCK; k++)
-                r->dw[place * r->columns + k] = slope[k % BLOCK];
-    }
-    if (place >= 0 && ++at->pending == PENDING)
-        multiply(at);
-}
-
 /* One scalar measurement: innovation, gain, new mean, covariance and slopes. */
 static void correct(filter_state *at, int64_t step, int output, double predicted, const double *H)
 {
     filter_request *const r = at->request;
     const double variance = r->r[step * N_OUTPUTS + output];
     double PH[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0}, s = variance;
-    for (int n = 0; n < at->awake; n++)
+    for (int n = 0; n < at->states.awake; n++)
         UNROLLED for (int b = 0; b < ROW; b++)
-            if (H[at->order[n]] != 0.0 && FILLED(b))
-                ((block *)PH)[b] += ((block *)at->P[at->order[n]])[b] * H[at->order[n]];
-    for (int n = 0; n < at->awake; n++)
-        s += H[at->order[n]] * PH[at->order[n]];
+            if (H[at->states.order[n]] != 0.0 && FILLED(at->states, b))
+                ((block *)PH)[b] += ((block *)at->P[at->states.order[n]])[b] * H[at->states.order[n]];
+    for (int n = 0; n < at->states.awake; n++)
+        s += H[at->states.order[n]] * PH[at->states.order[n]];
     const double nu = r->y[step * N_OUTPUTS + output] - predicted, scale = 1.0 / sqrt(s);
     double K[N] = {0.0};
-    for (int n = 0; n < at->awake; n++) {
-        const int i = at->order[n];
+    for (int n = 0; n < at->states.awake; n++) {
+        const int i = at->states.order[n];
         K[i] = PH[i] / s;
         at->body.x[i] += K[i] * nu;
         UNROLLED for (int b = 0; b < ROW; b++)
-            if (FILLED(b))
+            if (FILLED(at->states, b))
                 ((block *)at->P[i])[b] -= K[i] * ((block *)PH)[b];
     }
     if (r->K)
@@ -194,9 +106,8 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
         r->w[place] = nu * scale;
         r->s[place] = s;
     }
-    if (E_HAS[output])
-        gather(r, at->j.E + output * N_PARAMETERS, at->E[output]);
-    correct_slopes(at, H, at->E[output], K, nu, scale, place);
+    const filter_correction given = {H, K, nu, scale, place};
+    correct_slopes(&at->slopes, r, &at->states, output, at->j.E + output * N_PARAMETERS, given);
 }
 
 static void measure(filter_state *at, int64_t step)
@@ -229,10 +140,10 @@ static void measure(filter_state *at, int64_t step)
 ALWAYS_INLINE void product(const filter_state *at, const matrix left, const int has[N][N], const matrix right, matrix to)
 {
     UNROLLED for (int i = 0; i < N; i++) {
-        if (!AWAKE(i))
+        if (!AWAKE(at->states, i))
             continue;
         UNROLLED for (int b = 0; b < ROW; b++) {
-            if (!FILLED(b))
+            if (!FILLED(at->states, b))
                 continue;
             block sum = {0.0};
             UNROLLED for (int m = 0; m < N; m++)
@@ -252,7 +163,7 @@ static void transition(filter_state *at, double h_s)
                 at->A[i][k] = at->j.A[i * N + k];
     product(at, at->A, A_HAS, at->A, at->square);
     UNROLLED for (int i = 0; i < N; i++) {
-        if (!AWAKE(i))
+        if (!AWAKE(at->states, i))
             continue;
         UNROLLED for (int k = 0; k < N; k++)
             if (F_HAS[i][k])
@@ -264,12 +175,12 @@ static void transition(filter_state *at, double h_s)
 static void spread(filter_state *at, const double *noise)
 {
     product(at, at->F, F_HAS, at->P, at->FP);
-    for (int n = 0; n < at->awake; n++)
-        for (int m = 0; m < at->awake; m++)
-            at->PF[at->order[n]][at->order[m]] = at->FP[at->order[m]][at->order[n]];
+    for (int n = 0; n < at->states.awake; n++)
+        for (int m = 0; m < at->states.awake; m++)
+            at->PF[at->states.order[n]][at->states.order[m]] = at->FP[at->states.order[m]][at->states.order[n]];
     product(at, at->F, F_HAS, at->PF, at->P);
     for (int i = 0; i < N; i++) {
-        for (int k = 0; AWAKE(i) && k < i; k++)
+        for (int k = 0; AWAKE(at->states, i) && k < i; k++)
             at->P[k][i] = at->P[i][k];
         at->P[i][i] += noise[i];
     }
@@ -284,45 +195,15 @@ static void stir(filter_state *at, int v, double h_s, double noise)
     for (int k = 0; k < 2; k++) {
         const double t_s = INSTANT[k] * h_s;
         double g[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0};
-        for (int n = 0; n < at->awake; n++) {
-            const int i = at->order[n];
+        for (int n = 0; n < at->states.awake; n++) {
+            const int i = at->states.order[n];
             g[i] = (i == v) + t_s * (at->A[i][v] + 0.5 * t_s * at->square[i][v]);
         }
-        for (int n = 0; n < at->awake; n++) {
-            const int i = at->order[n];
+        for (int n = 0; n < at->states.awake; n++) {
+            const int i = at->states.order[n];
             UNROLLED for (int b = 0; b < ROW; b++)
-                if (g[i] != 0.0 && FILLED(b))
+                if (g[i] != 0.0 && FILLED(at->states, b))
                     ((block *)at->P[i])[b] += 0.5 * noise * g[i] * ((const block *)g)[b];
-        }
-    }
-}
-
-/* The slopes one step on: S + h (1 + h A / 2) (A S + D), those of noise with a memory by what is kept of it. */
-static void move_slopes(filter_state *at, double h_s, const double *kept)
-{
-    const filter_request *const r = at->request;
-    const double *const A = at->j.A;
-    UNROLLED for (int i = 0; i < N; i++)
-        if (D_HAS[i] && AWAKE(i))
-            gather(r, at->j.D + i * N_PARAMETERS, at->D[i]);
-    for (int b = 0; b < blocks(r); b++) {
-        block *const S = at->S[b], rates[N] = {{0.0}};
-        UNROLLED for (int i = 0; i < N; i++) {
-            if (!AWAKE(i))
-                continue;
-            rates[i] = at->D[i][b];
-            UNROLLED for (int m = 0; m < N; m++)
-                if (A_HAS[i][m])
-                    rates[i] += A[i * N + m] * S[m];
-        }
-        UNROLLED for (int i = 0; i < N; i++) {
-            if (!AWAKE(i))
-                continue;
-            block second = {0.0};
-            UNROLLED for (int m = 0; m < N; m++)
-                if (A_HAS[i][m])
-                    second += A[i * N + m] * rates[m];
-            S[i] = kept[i] < 1.0 ? kept[i] * S[i] : S[i] + h_s * (rates[i] + 0.5 * h_s * second);
         }
     }
 }
@@ -370,7 +251,7 @@ static void forgetting(const filter_state *at, double h_s, double *kept, double 
     const filter_request *const r = at->request;
     for (int i = 0; i < N; i++) {
         kept[i] = 1.0;
-        if (r->forget[i] > 0.0 && AWAKE(i)) {
+        if (r->forget[i] > 0.0 && AWAKE(at->states, i)) {
             kept[i] = exp(-r->forget[i] * h_s);
             noise[i] = 0.5 * r->q[i] / r->forget[i] * (1.0 - kept[i] * kept[i]);
         }
@@ -394,7 +275,7 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
-        noise[i] = AWAKE(i) ? r->q[i] * h_s + (r->stir ? r->stir[step * N + i] * share : 0.0) : 0.0;
+        noise[i] = AWAKE(at->states, i) ? r->q[i] * h_s + (r->stir ? r->stir[step * N + i] * share : 0.0) : 0.0;
     forgetting(at, h_s, kept, noise);
     for (int a = 0; a < AXES; a++)
         sign[a] = 1.0;
@@ -428,10 +309,10 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
     /* The mean stays where friction holds it, however unsure its speed is: parameters move nothing there. */
     empty_rows(held, j->A, N);
     empty_rows(held, j->D, N_PARAMETERS);
-    move_slopes(at, h_s, kept);
+    move_slopes(&at->slopes, r, &at->states, h_s, j->A, j->D, kept);
     for (int a = 0; a < N_AXES; a++) {
-        for (int b = 0; held[a] && b < blocks(r); b++)
-            at->S[b][AXIS_VELOCITY[a]] = (block){0.0};
+        if (held[a])
+            hold_slopes(&at->slopes, r, AXIS_VELOCITY[a]);
         if (r->locked[a])
             noise[AXIS_VELOCITY[a]] = 0.0;
     }
@@ -455,7 +336,7 @@ static int pieces_of(const filter_state *at, double h_s)
 {
     double fastest = 0.0;
     for (int i = 0; i < N; i++)
-        if (AWAKE(i) && at->request->forget[i] == 0.0)
+        if (AWAKE(at->states, i) && at->request->forget[i] == 0.0)
             fastest = fmax(fastest, fabs(at->j.A[i * N + i]));
     return (int)fmin(fmax(ceil(h_s * fastest / FASTEST), 1.0), MOST_PIECES);
 }
@@ -504,11 +385,6 @@ int32_t filter_run(filter_request *request)
         if (at.pieces > PIECES_ALLOWED + PIECES_A_STEP * step)
             return (int32_t)step;
     }
-    multiply(&at);
-    for (int k = 0; k < request->columns; k++) {
-        request->pull[k] = at.pull[k / BLOCK][k % BLOCK];
-        for (int l = 0; l <= k; l++)
-            request->gram[k * request->columns + l] = request->gram[l * request->columns + k] = at.gram[l / BLOCK][k][l % BLOCK];
-    }
+    finish_slopes(&at.slopes, request);
     return (int32_t)request->steps;
 }

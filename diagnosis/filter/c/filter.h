@@ -6,7 +6,7 @@
 
 enum { MAX_COLUMNS = 256 };
 
-/* A tape of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
+/* A filter input of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
  *
  * Whitened innovations w and their slopes dw go to the row of the instant, the outputs to their slots. A measurement whose place or slot
  * is below 0 moves the state, but nothing is kept of it and it does not count in the likelihood. */
@@ -30,7 +30,7 @@ typedef struct {
 } filter_request;
 
 /* The filter's linear answer to small disturbances, `columns` of them side by side: added to a state over the step from an instant
- * (target < N_STATES) or to an output at an instant (target - N_STATES), as the gains F, K, H of a run say. A tape is answered in parts, the
+ * (target < N_STATES) or to an output at an instant (target - N_STATES), as the gains F, K, H of a run say. It is answered in parts, the
  * instants from `first` up to `end`: `state` and `awake`, 0 at the start, carry the answer from one to the next. */
 typedef struct {
     int64_t first, end;

@@ -1,0 +1,40 @@
+/* Which states a filter moves, and its numbers by blocks of them that stay in registers. */
+#ifndef STATES_H
+#define STATES_H
+
+#include "step.h"
+
+#include "filter.h"
+
+#define N N_STATES
+#define BLOCK 8 /* numbers worked on at a time */
+
+typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_alias));
+#define ROW ((N + BLOCK - 1) / BLOCK) /* blocks */
+#define WIDTH (ROW * BLOCK)
+typedef double matrix[N][WIDTH] __attribute__((aligned(sizeof(block)))); /* N by N, its rows filled up with zeros to whole blocks */
+
+/* States of effects that are off sleep: nothing moves them, and what is known of them is 0. */
+typedef struct {
+    bool sleeps[N], empty[ROW];
+    int order[N], awake; /* the states that do not sleep */
+} awake_states;
+
+/* What never sleeps the compiler knows. */
+#define AWAKE(states, i) (STATE_SWITCH[i] < 0 || !(states).sleeps[i])
+#define FILLED(states, b) (!(states).empty[b])
+
+static void wake(awake_states *states, const filter_request *request)
+{
+    states->awake = 0;
+    for (int b = 0; b < ROW; b++)
+        states->empty[b] = true;
+    for (int i = 0; i < N; i++) {
+        states->sleeps[i] = STATE_SWITCH[i] >= 0 && request->p[STATE_SWITCH[i] < 0 ? 0 : STATE_SWITCH[i]] == 0.0;
+        states->empty[i / BLOCK] &= states->sleeps[i];
+        if (!states->sleeps[i])
+            states->order[states->awake++] = i;
+    }
+}
+
+#endif
