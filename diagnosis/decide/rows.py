@@ -75,7 +75,7 @@ def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LAT
     usual = _usual(short, nominal)
     if usual is None:
         return ()
-    found, commands = misplaced(_Asked(short, usual))
+    found, commands = misplaced(Asked(short, usual))
     if found is None:
         return _unseen(commands)
     refused = found.follows and found.slip.way in ways and found.gain > decisions.ROWS_REFUSED
@@ -102,7 +102,7 @@ def most_by_an_effect(case: Case, usual: Fit) -> float:
 
 
 @dataclass(frozen=True)
-class _Asked:
+class Asked:
     """Logs as they are with the plant's fit to them, asked what it gains to move columns."""
 
     case: Case
@@ -128,7 +128,7 @@ class _Asked:
         return Misplaced(every, 1), Misplaced(every, -1)
 
 
-def misplaced(asked: _Asked) -> tuple[Moved | None, tuple[Moved, ...]]:
+def misplaced(asked: Asked) -> tuple[Moved | None, tuple[Moved, ...]]:
     """The columns that stand in other rows than those of their time, None where none do; and what it gains to move all inputs by a row,
     nothing where that is surely lost."""
     model = asked.case.library.bound.model

@@ -6,16 +6,20 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
+from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred, surely_better
 from diagnosis.decide.weighing import Weighed
+from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
-from diagnosis.diagnose import Material, diagnose
+from diagnosis.detect.linearisation import Scores
+from diagnosis.detect.replicas import Tail
+from diagnosis.diagnose import Material, borne_out, diagnose, of_consequence
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import nominal_fit, plain_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.result import Result
+from diagnosis.result import Judged, Result, Seen
 from diagnosis.validate.score import Score
 from records.log import RunLog
 from sim.added_effects import library
@@ -116,6 +120,25 @@ def test_what_the_hold_out_has_is_surely_better_and_what_it_has_not_surely_worse
     assert rules[0].outcome == "nothing added"
     assert not surely_better(without, [rubbing()])[0]
     assert surely_better(without, []) == (False, ())
+
+
+@pytest.mark.parametrize(("p", "sure"), [(1e-9, True), (1e-4, False)])
+def test_a_hold_out_of_another_rig_makes_no_sure_gap_none(p: float, sure: bool) -> None:
+    # Truth: the rig that was fitted rubs, that of the hold-out does not. A gap of less chance than SURE_GAP stands though the one name that
+    # there is be refuted; a small one that is not sure falls by the same hold-out.
+    (_, other), found = judged(arm_log(seed=34)), rubbing()
+    case = arm_case(arm_log(RUB, seed=32))
+    plain = FittedHypothesis((), plain_fit(case), 0.0)
+    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+    detection = Detection(p, Tail(5.0, 1.0), 30.0, False, FormScores((), empty, np.zeros(0)))
+    seen = Seen(case, None, plain, object(), (), None, detection)  # type: ignore[arg-type]
+    told, notes, _ = asked(other, found)
+    weighed, _ = calibrated(Weighed((found,), (0.9,), 0.1, 0.0, 10.0), favour(told), other.off(found))
+    assert weighed.nameless
+    after, stands = borne_out(seen, weighed)
+    assert (stands, after.detection.p) == (sure, p)
+    result = Judged(object(), None, weighed, other.base, other, notes)  # type: ignore[arg-type]
+    assert of_consequence(seen, result)[1]
 
 
 def test_what_leaves_most_of_the_hold_outs_error_is_told_to_be_a_part() -> None:

@@ -117,3 +117,13 @@ def test_an_effect_that_promises_more_than_a_move_of_columns_is_seen(effects, pr
     # Truth: a play of 3 degrees, which one column a row late could follow only in part; and a rig that lacks nothing.
     case = make_case(effect_library(arm()), [arm_log(effects, seed=7)])
     assert (most_by_an_effect(case, plain_fit(case)) > 2.0 * decisions.ROWS_REFUSED) is promised
+
+
+def test_of_a_move_that_an_effect_explains_better_nothing_is_said() -> None:
+    # Truth: commands logged three rows early, by which the plant follows more than the 50 nats better that refuse a log; and the same from
+    # a rig whose encoder has steps of two counts, which alone promise some 500 nats.
+    early, ways = Misplaced((0,), -3), (LATE, EARLY)
+    with pytest.raises(BadInput, match="u_V stands three rows early"):
+        told(effect_library(arm()), logged(arm_log(seed=7), early), ways)
+    coarse = arm_log({"theta_sensor.quantization": {"q": 0.0023}}, seed=7)
+    assert told(effect_library(arm()), logged(coarse, early), ways) == []

@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from diagnosis import decisions
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.nominal import nominal_fit
+from diagnosis.hypothesis.hypothesis import noise_on, nominal_hypothesis
 from diagnosis.library.reading_noise import ReadingNoise
 from records.log import RunLog
+from sim.effect import Role
 from tests.diagnosis.arm import LONG_S, PERIOD_S, arm, arm_case, arm_log
 
 STEP_RAD = 1.150486e-3
@@ -62,3 +65,18 @@ def test_they_are_no_gap(log: RunLog) -> None:
     found = diagnose(arm(), Material([log], [], [], [None])).diagnosis
     assert found.verdict == "no gap"
     assert any(note.kind == "coloured_readings" for note in found.note_records)
+
+
+@pytest.mark.parametrize("durations_s", [(4.0,), (4.0, 8.0)])
+def test_a_torque_that_stays_for_longer_than_a_share_of_the_longest_log_is_no_noise(durations_s) -> None:
+    # Truth: a torque that never goes, so that the likeliest correlation time is the longest that may be asked. Tolerance: rounding.
+    pushes = [{"arm.disturbance": {"torque": sign * 1e-3, "t_0": 0.0, "duration": 100.0}} for sign in (1.0, -1.0)]
+    logs = [arm_log(push, 31, seconds) for push, seconds in zip(pushes, durations_s, strict=False)]
+    case = arm_case(*logs)
+    gust = noise_on(case, 0)
+    assert gust is not None
+    size, time = gust.symbol(Role.STRENGTH), gust.symbol(Role.MEMORY)
+    start = nominal_hypothesis(case, -2.0).with_effects({gust.name: {size: 1e-4, time: 0.5}})
+    longest_s = max(log.t_s[-1] - log.t_s[0] for log in logs)
+    found = coloured_noise_of(case, start).effects[gust.name]
+    assert found[time] == pytest.approx(decisions.LONGEST_PUSH_SHARE * longest_s)
