@@ -1,0 +1,178 @@
+"""Every kind of .mat file that a run may be saved in; what is missing, broken or ambiguous is refused by name."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+from scipy.sparse import csc_matrix
+
+from recordings.mapping.mapping import ColumnMapping
+from records.errors import BadInput
+from records.log import load_log
+from tests.recordings.here import imported_here
+from tests.recordings.runs import CE150, FOUR, RUN, T_S, mapped, save_run
+from twinlaw.command import main
+
+
+def test_vectors_named_as_the_columns_become_the_same_log(tmp_path: Path) -> None:
+    save_run(tmp_path / "run.mat", psi_ref_rad=np.zeros(50), table_digest="ab" * 32, remark="of no use")
+    out = tmp_path / "run.csv"
+    assert main(["import", str(tmp_path / "run.mat"), "--out", str(out), "--json"]) == 0
+    log = load_log(out, CE150)
+    for name, values in RUN.items():
+        np.testing.assert_array_equal(log.column(name), values)
+    assert (log.loop, log.sample_period_s, log.table_digest) == ("closed", 0.01, "ab" * 32)
+    assert list(log.extra) == ["psi_ref_rad"]
+
+
+def test_a_struct_and_foreign_names_with_factors_are_taken(tmp_path: Path) -> None:
+    savemat(
+        tmp_path / "rig.mat",
+        {"run": {"time": T_S, "um": RUN["u_M_V"], "ut": RUN["u_T_V"], "El": np.degrees(RUN["psi_rad"]), "a*b": T_S}},
+    )
+    columns = ["t_s=time", "u_M_V=um", "u_T_V=ut", "psi_rad=El*0.017453292519943295", "phi_rad=a*b"]
+    out = tmp_path / "run.csv"
+    arguments = [word for column in columns for word in ("--column", column)]
+    assert main(["import", str(tmp_path / "rig.mat"), *arguments, "--loop", "open", "--out", str(out)]) == 0
+    log = load_log(out, CE150)
+    np.testing.assert_allclose(log.column("psi_rad"), RUN["psi_rad"], rtol=1e-15, atol=0)
+    np.testing.assert_array_equal(log.column("phi_rad"), T_S)
+    assert log.loop == "open"
+
+
+def _without(name: str) -> dict[str, Any]:
+    return {name: None}
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (_without("t_s"), r"column 't_s': got u_M_V, u_T_V, psi_rad, phi_rad, .*--column t_s=NAME"),
+        (_without("phi_rad"), r"columns phi_rad: got t_s, u_M_V, u_T_V, psi_rad, .*--column phi_rad=SIGNAL"),
+        ({"phi_rad": np.zeros(49)}, r"column 'phi_rad': got 49 values where t_s has 50"),
+        ({"t_s": T_S[::-1]}, r"times of psi_rad: got 0\.48 s in row 2 after 0\.49 s"),
+        ({"t_s": np.where(T_S == 0.1, np.nan, T_S)}, "times of psi_rad: got nan s in row 11"),
+        ({"u_M_V": np.where(T_S > 0.2, np.nan, 5.0)}, r"column 'u_M_V': got no number at 0\.21 s, in 29 of 50 rows"),
+        ({"loop": "sideways"}, "text 'loop': got 'sideways'"),
+    ],
+)
+def test_a_wrong_matlab_file_is_refused_by_name(tmp_path: Path, changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(BadInput, match=message):
+        imported_here(save_run(tmp_path / "run.mat", **changes), ColumnMapping())
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (None, "No such file"),
+        (b"", "no whole .mat file"),
+        (b"MATLAB 7.3 MAT-file, made by hand".ljust(124) + b"\x00\x02IM" + bytes(400), "no whole HDF5"),
+        (bytes(range(256)) * 8, "no whole .mat file"),
+    ],
+    ids=["missing", "empty", "version 7.3", "rubbish"],
+)
+def test_a_file_that_is_no_matlab_file_is_refused(tmp_path: Path, content: bytes | None, message: str) -> None:
+    if content is not None:
+        (tmp_path / "run.mat").write_bytes(content)
+    with pytest.raises(BadInput, match=message):
+        imported_here(tmp_path / "run.mat", ColumnMapping())
+
+
+def test_a_truncated_matlab_file_is_refused_at_every_length(tmp_path: Path) -> None:
+    whole = save_run(tmp_path / "whole.mat").read_bytes()
+    for length in range(0, len(whole), 97):
+        (tmp_path / "cut.mat").write_bytes(whole[:length])
+        with pytest.raises(BadInput):
+            imported_here(tmp_path / "cut.mat", ColumnMapping())
+
+
+CELLS = np.empty((1, 5), object)
+CELLS[0] = list(RUN.values())
+MATRIX = np.vstack([RUN[name] for name in RUN])
+SCOPE = np.zeros(4, dtype=[("values", "O"), ("label", "O")])
+for place, name in enumerate(FOUR):
+    SCOPE[place] = (RUN[name][:, None], name)
+
+# What is saved, and what is said of it; the numbers must be those of RUN.
+KINDS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
+    "another vector beside": ({**RUN, "K": np.arange(6.0), "gains": np.eye(3), "note": "x", "model": {"a": np.arange(7.0)}}, {}),
+    "one structure": ({"run": RUN}, {}),
+    "structures in a structure": ({"data": {"log": RUN}}, {}),
+    "columns and rows": ({name: values[:, None] if name < "q" else values[None, :] for name, values in RUN.items()}, {}),
+    "three dimensions": ({name: values.reshape(1, 1, -1) for name, values in RUN.items()}, {}),
+    "time in ms": ({**RUN, "t_s": T_S * 1e3}, {"t_s": "t_s*0.001"}),
+    "time_ms": ({**{name: RUN[name] for name in FOUR}, "time_ms": T_S * 1e3}, {}),
+    "a scope by its labels": ({"Scope": {"time": T_S, "signals": SCOPE, "blockName": "m/Scope"}}, {}),
+    "a scope by its places": (
+        {"Scope": {"time": T_S, "signals": SCOPE}},
+        {name: f"Scope.signals({place}).values" for place, name in enumerate(FOUR, start=1)},
+    ),
+    "structures with time": (
+        {f"s{name}": {"time": T_S, "signals": {"values": RUN[name], "label": ""}} for name in FOUR},
+        {name: f"s{name}.signals.values" for name in FOUR},
+    ),
+    "structure with time, wide": (
+        {"S": {"time": T_S, "signals": {"values": MATRIX[1:].T}}},
+        {name: f"S.signals.values(:,{place})" for place, name in enumerate(FOUR, start=1)},
+    ),
+    "a matrix of To File": ({"ans": MATRIX}, {name: f"ans({place},:)" for place, name in enumerate(RUN, start=1)}),
+    "tout and yout": (
+        {"tout": T_S, "yout": MATRIX[1:].T},
+        {name: f"yout(:,{place})" for place, name in enumerate(FOUR, start=1)},
+    ),
+    "timeseries": ({f"{name}_ts": {"Name": name, "Time": T_S, "Data": RUN[name]} for name in FOUR}, {}),
+    "timeseries by their fields": (
+        {f"x{place}": {"Time": T_S, "Data": RUN[name]} for place, name in enumerate(FOUR)},
+        {name: f"x{place}.Data" for place, name in enumerate(FOUR)},
+    ),
+    "degrees and millivolts": (
+        {"time": T_S, "um_mV": 1e3 * RUN["u_M_V"], "ut_mV": 1e3 * RUN["u_T_V"]}
+        | {name: np.degrees(RUN[f"{name[:3]}_rad"]) for name in ("psi_deg", "phi_deg")},
+        {"u_M_V": "um_mV", "u_T_V": "ut_mV", "phi_rad": "phi_deg*pi/180"},
+    ),
+    "a negative sign": ({**RUN, "psi_rad": -RUN["psi_rad"]}, {"psi_rad": "-psi_rad"}),
+    "no times at all": ({name: RUN[name] for name in FOUR}, {"t_s": "row*0.01"}),
+    "a sample period alone": ({**{name: RUN[name] for name in FOUR}, "Ts": 0.01}, {"t_s": "Ts*row"}),
+    "cells": ({"log": CELLS}, {name: f"log({place})" for place, name in enumerate(RUN, start=1)}),
+    "ticks of 16 bits": ({**{name: RUN[name] for name in FOUR}, "millis": (T_S * 1e3).round() % 65536}, {}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_matlab_file_gives_the_run(kind: str, tmp_path: Path) -> None:
+    saved, said = KINDS[kind]
+    savemat(tmp_path / "run.mat", saved)
+    log = imported_here(tmp_path / "run.mat", mapped(**said)).log
+    for name, values in RUN.items():
+        np.testing.assert_allclose(log.column(name), values, rtol=1e-14, atol=1e-15)
+    assert log.sample_period_s == 0.01
+
+
+def test_version_4_is_read(tmp_path: Path) -> None:
+    savemat(tmp_path / "run.mat", RUN, format="4")
+    np.testing.assert_array_equal(
+        imported_here(tmp_path / "run.mat", ColumnMapping()).log.column("psi_rad"), RUN["psi_rad"]
+    )
+
+
+def test_structures_with_the_same_fields_are_named_and_a_group_is_taken(tmp_path: Path) -> None:
+    """Truth: run2 is half of run1; neither may win silently, whatever their order."""
+    half = {**RUN, "psi_rad": 0.5 * RUN["psi_rad"], "t_s": T_S + 5.0}
+    savemat(tmp_path / "two.mat", {"run1": RUN, "run2": half})
+    with pytest.raises(
+        BadInput, match=r"run1\.psi_rad .* or run2\.psi_rad .*--column psi_rad=run1\.psi_rad, or --group run1"
+    ):
+        imported_here(tmp_path / "two.mat", ColumnMapping())
+    second = imported_here(tmp_path / "two.mat", ColumnMapping(group="run2")).log
+    np.testing.assert_array_equal(second.column("psi_rad"), half["psi_rad"])
+    assert second.t_s[0] == 5.0  # its own times with it
+    with pytest.raises(BadInput, match="nothing under 'run3'"):
+        imported_here(tmp_path / "two.mat", ColumnMapping(group="run3"))
+
+
+def test_a_sparse_vector_is_a_vector_and_a_sparse_matrix_is_left_alone(tmp_path: Path) -> None:
+    sparse = {"psi_rad": csc_matrix(RUN["psi_rad"][:, None]), "K": csc_matrix(np.eye(3))}
+    done = imported_here(save_run(tmp_path / "run.mat", **sparse), ColumnMapping())
+    np.testing.assert_array_equal(done.log.column("psi_rad"), RUN["psi_rad"])

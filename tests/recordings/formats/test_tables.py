@@ -1,0 +1,72 @@
+"""Tables of text: their header, what stands beside it, several recordings in one file, packed ones."""
+
+import gzip
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recordings.channels import Span
+from recordings.importing import import_file
+from recordings.mapping.mapping import ColumnMapping
+from records.errors import BadInput
+from tests.recordings.here import imported_here
+from tests.recordings.runs import T_S
+
+
+def test_without_a_mapping_the_columns_are_named_and_one_is_proposed_that_works(tmp_path: Path) -> None:
+    table = "Time [ms];Main motor (mV);Tail motor (mV);Elevation [deg];Azimuth [deg]\n"
+    rows = "".join(f"{1e3 * t:g};{5e3 + t};1800;{10 * t};{-5 * t}\n" for t in T_S)
+    (tmp_path / "rig.csv").write_text(table + rows)
+    with pytest.raises(BadInput, match=r"Elevation \[deg\].*separated by semicolon") as refused:
+        imported_here(tmp_path / "rig.csv", ColumnMapping())
+    words = shlex.split(refused.value.remedy.partition("for example ")[2])
+    said = dict(word.split("=", 1) for word in words if word != "--column")
+    log = imported_here(tmp_path / "rig.csv", ColumnMapping(columns=said)).log
+    np.testing.assert_allclose(log.column("psi_rad"), np.radians(10.0 * T_S), atol=1e-9)
+    np.testing.assert_allclose(log.column("u_M_V"), 5.0 + 1e-3 * T_S, atol=1e-9)
+    np.testing.assert_allclose(log.t_s, T_S, atol=1e-9)
+
+
+def test_what_begins_before_the_inputs_is_left_out_and_said(tmp_path: Path) -> None:
+    """Truth: u_M is known from 0.05 s on; asked for from 0.1 s on nothing is lost, and nothing said."""
+    rows = [f"{t:.2f},{5 if t > 0.045 else ''},1,{t},0" for t in T_S]
+    (tmp_path / "run.csv").write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(rows))
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.t_s, T_S[5:])
+    assert "u_M_V begins at 0.05 s: 5 samples of the outputs in front of it are left out" in done.found
+    assert not any(
+        "begins at" in told for told in imported_here(tmp_path / "run.csv", ColumnMapping(), Span(0.1)).found
+    )
+
+
+def test_recordings_behind_one_another_are_counted_on_and_a_part_is_one_of_them(tmp_path: Path) -> None:
+    """Truth: two runs of 2 s from 0 on, each with its header; the second half as far, on a clock that begins again."""
+    t_s = 0.01 * np.arange(200)
+    head = "t_s,u_M_V,u_T_V,psi_rad,phi_rad\n"
+    runs = ["\n".join(f"{t:.2f},5,1,{share * t},0" for t in t_s) + "\n" for share in (1.0, 0.5)]
+    (tmp_path / "run.csv").write_text(head + runs[0] + head + runs[1])
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.t_s, [*t_s, *(t_s + 3.0)], atol=1e-12)
+    assert any("times begin again 1 times" in told and "from 3 s here" in told for told in done.found)
+    assert any("the header stands again in line 202" in told for told in done.found)
+    second = imported_here(tmp_path / "run.csv", ColumnMapping(), Span(3.0)).log
+    np.testing.assert_allclose(second.column("psi_rad"), 0.5 * t_s, atol=1e-12)
+
+
+def test_a_packed_table_is_read_and_half_of_one_is_refused(tmp_path: Path) -> None:
+    text = "t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(f"{t:.2f},5,1,{t},0" for t in T_S)
+    packed = gzip.compress(text.encode())
+    (tmp_path / "run.csv.gz").write_bytes(packed)
+    np.testing.assert_allclose(import_file(tmp_path / "run.csv.gz", ColumnMapping()).log.column("psi_rad"), T_S)
+    (tmp_path / "half.csv.gz").write_bytes(packed[: len(packed) // 2])
+    with pytest.raises(BadInput, match="no whole gzip file"):
+        import_file(tmp_path / "half.csv.gz", ColumnMapping())
+
+
+def test_times_that_are_text_are_shown_as_they_stand(tmp_path: Path) -> None:
+    rows = [f"'{1000 + k},{k % 10},5,1.8,0,0.1" for k in range(9)]
+    (tmp_path / "run.csv").write_text("\n".join(["t_ms,k,u_M_V,u_T_V,psi_rad,phi_rad", *rows]))
+    with pytest.raises(BadInput, match=r"t_ms \(text, as line 2: \"'1000\""):
+        imported_here(tmp_path / "run.csv", ColumnMapping())
