@@ -4,6 +4,7 @@ from pathlib import Path
 
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
+from rig.emulator.stops import StopKind
 from toolchain.host import CText
 from toolchain.target import build_image
 
@@ -40,6 +41,25 @@ static void clock_64_mhz(void) {
 }
 """
 
+# TIM6 interrupts every 10 ms, and the program counts.
+TICK = """
+volatile uint32_t ticks;
+void tick(void) { REG(0x40001010) = 0; ticks++; }
+void Reset_Handler(void) {
+    clock_64_mhz();
+    REG(0x4002103C) = 3u << 4;
+    REG(0x40001028) = 63;
+    REG(0x4000102C) = 9999;
+    REG(0x40001014) = 1;
+    REG(0x40001010) = 0;
+    REG(0x4000100C) = 1;
+    REG(0x40001000) = 1;
+    REG(0xE000E100) = 1u << 17;
+    for (;;) __asm volatile("wfi");
+}
+VECTORS([16 + 17] = tick);
+"""
+
 
 def build(name: str, source: str) -> Path:
     """The ELF of one C text, with the prelude before it."""
@@ -49,6 +69,14 @@ def build(name: str, source: str) -> Path:
 def powered(name: str, source: str, config: BoardConfig | None = None) -> EmulatedBoard:
     """A board with that program, just powered up."""
     return EmulatedBoard(build(name, source), config)
+
+
+def stopped(name: str, source: str, cycles: int = 200_000) -> EmulatedBoard:
+    """A board on which that program has run to its STOP."""
+    board = powered(name, source)
+    stop = board.run_for(cycles)
+    assert stop.kind == StopKind.BREAKPOINT, str(stop)
+    return board
 
 
 def word(board: EmulatedBoard, name: str, index: int = 0) -> int:
