@@ -12,7 +12,7 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.jitter import jitter_sd
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import coefficients
+from diagnosis.hypothesis.hypothesis import coefficients, known_beginning
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
@@ -45,7 +45,8 @@ def improved_plant(case: Case, found: FittedHypothesis) -> Plant:
         parameters[spec.name] = entry
     plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
-    supposed = {name: fit.hypothesis.effects[name] for name in _supposed(case, found)}
+    known = {name: known_beginning(case, case.library.effects[name]) for name in _supposed(case, found)}
+    supposed = {name: {**fit.hypothesis.effects[name], **begins} for name, begins in known.items()}
     effects = {**case.draws, **supposed}  # a draw of these very flights comes before the stated one
     if not effects:
         return plant

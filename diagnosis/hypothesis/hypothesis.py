@@ -114,15 +114,19 @@ def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -
     for name, values in hypothesis.effects.items():
         if name in compiled.names:
             effect = library.effects[name]
-            begins = effect.having(Role.BEGINNING)
-            known = {} if begins is None else {begins.symbol: case.begins_s}
-            for symbol, value in {**values, **known}.items():
+            for symbol, value in {**values, **known_beginning(case, effect)}.items():
                 p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if effect.reads_late else value
     for output in library.bound.model.outputs:
         noise = hypothesis.reading_noise.get(output)
         p[compiled.index[switch_of(output)]] = 0.0 if noise is None else 1.0
         p[compiled.index[time_of(output)]] = 1.0 if noise is None else noise.time_s
     return p
+
+
+def known_beginning(case: Case, effect: Effect) -> dict[str, float]:
+    """When an effect begins, which is known: with the earliest of the logs; nothing for one that has no such number."""
+    begins = effect.having(Role.BEGINNING)
+    return {} if begins is None else {begins.symbol: case.begins_s}
 
 
 def filter_input_under(

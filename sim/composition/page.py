@@ -42,6 +42,10 @@ command, a torque, a speed, a turn, which the plant's equations state (`Places`)
 rig. Within them the diagnosis takes every size for likely, so they are wide; the sources below are of the equations, and of the
 sizes where one is named.
 
+Instants, and the t of an equation, are by the clock of the log or of the simulated run (`t_s`), whatever its first row is. One is known
+and not fitted, `t_0` of `warmup`, when the motor is cold: a simulation takes it from the plant file, 0 where that states none;
+`twinlaw diagnose` takes the beginning of the earliest of its logs, whatever the file states, and writes that.
+
 The prior is what one believes of an effect before any log, in log odds: 0 of one that rigs of this kind are known for, -2 of one that
 is possible; what differs is said below, with the values of a number that make it less probable.
 

@@ -22,7 +22,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(
                 EffectParameter("a", "-", -0.5, 0.5, 0.03, 0.0, unlikely=one_way("a motor that warms up weakens")),
                 EffectParameter("T", "s", 0.5, 500.0, 20.0, starts=(5.0, 20.0, 60.0)),
-                EffectParameter("t_0", "s", -1.0e6, 1.0e6, 0.0, refining=True, role=Role.BEGINNING),
+                EffectParameter("t_0", "s", -1.0e10, 1.0e10, 0.0, refining=True, role=Role.BEGINNING),
             ),
             equation="K -> K (1 - a (1 - exp(-(t - t_0)/T)))",
             story="The motor's winding warms up and its resistance grows, so the same command gives less and less.",
