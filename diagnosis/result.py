@@ -58,7 +58,7 @@ class Material:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What is seen before any cause is looked for: the plant re-tuned within its spread, the looks at the library beside it, the fit with
+    """What is seen before any cause is looked for: the plant re-tuned within its spread, score tests of the library beside it, the fit with
     lost frames, and what all that says of a gap; `beside` is what was fitted already, `checked` are the logs to check on, `decisions` the
     rules that had a say so far."""
 

@@ -176,7 +176,7 @@ def _of_one(values: Disturbances) -> Disturbances:
 
 
 def linearised(case: Case, fit: Fit) -> Linearisation:
-    """The ground at a fit."""
+    """The linearisation at a fit."""
     hypothesis = fit.hypothesis
     compiled = case.library.compiled(hypothesis.effects)
     runs = passes(case, hypothesis, case.free.tolist(), slopes=True, gains=True)
