@@ -1,5 +1,7 @@
 """The answer put into its record: the verdict with places, times, effects, what the hold-out says, and the next experiment."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -120,5 +122,12 @@ def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probabil
         for name in fitted.effects
         for symbol, entry in own[name].items()
     }
-    same = tuple(" + ".join(sorted(entry.effects)) for entry in alike(weighed, fitted))
-    return Hypothesis(" + ".join(fitted.effects), " + ".join(classes), probability, parameters, same)
+    same = [*_other_names(case, fitted.effects), *(entry.effects for entry in alike(weighed, fitted))]
+    told = tuple(" + ".join(sorted(effects)) for effects in same)
+    return Hypothesis(" + ".join(fitted.effects), " + ".join(classes), probability, parameters, told)
+
+
+def _other_names(case: Case, effects: Sequence[str]) -> list[tuple[str, ...]]:
+    """The same effects, one of them by another name that this plant has for it."""
+    copies = ((other.name, other.copy_of) for other in case.library.effects.values() if other.copy_of in effects)
+    return [tuple(copy if name == of else name for name in effects) for copy, of in copies]

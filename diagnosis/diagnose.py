@@ -29,7 +29,7 @@ from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
-from diagnosis.search.beam import Alone, Search, alone, search
+from diagnosis.search.beam import Alone, Search, alone, search, with_twins
 from diagnosis.search.draughts import Draught, beyond_noise, draught, gust_shares, without_gusts
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
@@ -235,13 +235,12 @@ def _alone(seen: Seen) -> Alone:
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
-    retuned = seen.retuned
-    seen = seen.because(*found.decisions)
-    left, weighed = _weighed(seen, found, beyond)
-    seen = seen.because(*weighed.decisions)
-    weighed, rules = without_idle(seen.case, weighed, found.fitted)
-    seen = seen.because(*rules)
-    seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
+    begun, weighed, left, holdout = _ranked(seen, material, found, beyond)
+    wider = found if not weighed.fitted else with_twins(seen.case, found, weighed.fitted[0])
+    if wider is not found:
+        found = wider
+        begun, weighed, left, holdout = _ranked(seen, material, found, beyond)
+    seen, retuned = begun, seen.retuned
     weighed, told, rules = _favoured(seen, holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
     doubts = doubt(seen.case, found, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *told)
@@ -251,6 +250,20 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
         chosen, told, rules = added(holdout, chosen)
         seen, notes = seen.because(*rules), (*notes, *told)
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
+
+
+def _ranked(
+    seen: Seen, material: Material, found: Search, beyond: Retune | None
+) -> tuple[Seen, Weighed, float, Holdout | None]:
+    """What was found by what the logs and the hold-out say of it, with what forms still gain beside the best, and the hold-out."""
+    left, weighed = _weighed(seen, found, beyond)
+    weighed, idle = without_idle(seen.case, weighed, found.fitted)
+    seen = seen.because(*found.decisions, *weighed.decisions, *idle)
+    seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
+    if holdout is None or not weighed.fitted:
+        return seen, weighed, left, holdout
+    weighed, preferences = preferred(holdout, weighed)
+    return seen.because(*preferences), weighed, left, holdout
 
 
 def _favoured(
@@ -264,11 +277,10 @@ def _favoured(
         own = Holdout(seen.case, ["" for _ in seen.case.flights], (), seen.retuned)
         weighed, law = calibrated(weighed, None, own.off(weighed.fitted[0]))
         return weighed, (), law
-    weighed, preferences = preferred(holdout, weighed)
     weighed, over = overruled(holdout, weighed, gained, left)
     told, notes, rules = asked(holdout, weighed.fitted[0])
     weighed, law = calibrated(weighed, favour(told), holdout.off(weighed.fitted[0]))
-    return weighed, notes, (*preferences, *over, *rules, *law)
+    return weighed, notes, (*over, *rules, *law)
 
 
 def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:

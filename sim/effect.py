@@ -108,7 +108,8 @@ class Effect:
     `depends` and `place` make the class ("torque(phi) on azimuth"): what the missing term depends on and where it acts. `equation` is
     it in plain text; `story` tells it to someone who knows the rig alone. `twins` are effects that data can hardly or not tell apart
     from it, each with the reason. Where `smooth` is false a fit needs the parameters' `starts` as a grid. `same_as` is the nominal
-    plant's parameter that does the same where it is not 0. Where `names_a_gap` is false the nominal plant leaves open whether it is
+    plant's parameter that does the same where it is not 0, `copy_of` the effect that does the same on this plant, of which this is another
+    name: plants may have either, a diagnosis asks for that one. Where `names_a_gap` is false the nominal plant leaves open whether it is
     there: a diagnosis supposes it where the logs ask for it, and calls that no gap. Where `repeats` is false each run has another
     phase of it: plants and simulations carry one, a diagnosis takes none from the plant file, and looks for it as noise or not at all.
 
@@ -135,6 +136,7 @@ class Effect:
     smooth: bool = True
     twins: Mapping[str, str] = field(default_factory=dict)
     same_as: str = ""
+    copy_of: str = ""
     names_a_gap: bool = True
     repeats: bool = True
     filter_state: FilterState | None = None

@@ -17,7 +17,7 @@ from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
 from diagnosis.validate.prediction import predictions, windows
-from diagnosis.validate.score import Errors, Score, errors_of, score
+from diagnosis.validate.score import Errors, Score, as_noisy, errors_of, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note
@@ -64,20 +64,13 @@ class Holdout:
         return self.ways[hypothesis]
 
     def _better_noise(self, hypothesis: Hypothesis) -> Hypothesis:
-        noisy = self._as_noisy(hypothesis)
+        noisy = as_noisy(self.case, hypothesis, self.base.fit.hypothesis)
         return noisy if score(self._errors(noisy), self._errors(hypothesis)).gain > 0.0 else hypothesis
 
     def _without_events(self, hypothesis: Hypothesis) -> Hypothesis:
         effects = self.case.library.effects
         kept = {name: values for name, values in hypothesis.effects.items() if not happens(effects[name], values)}
         return hypothesis if len(kept) == len(hypothesis.effects) else hypothesis.with_effects(kept)
-
-    def _as_noisy(self, hypothesis: Hypothesis) -> Hypothesis:
-        """The hypothesis with all noise of `base`."""
-        base, effects = self.base.fit.hypothesis, self.case.library.effects
-        gusts = {name: values for name, values in base.effects.items() if effects[name].is_noise}
-        kept = {name: values for name, values in hypothesis.effects.items() if not effects[name].is_noise}
-        return hypothesis.with_effects({**kept, **gusts}).with_noise_of(base)
 
     def score(self, hypothesis: Hypothesis) -> Score:
         """By how much a hypothesis predicts these logs better than `base`; by nothing where all that it names happened in other logs."""

@@ -77,8 +77,8 @@ class EffectLibrary:
 
     @cached_property
     def candidates(self) -> tuple[str, ...]:
-        """Effects that name a gap and are more than another value of one of the plant's own coefficients."""
-        gaps = (name for name, effect in self.effects.items() if effect.names_a_gap and effect.repeats)
+        """Effects that name a gap and are more than another name or another value of one of the plant's own coefficients."""
+        gaps = (n for n, effect in self.effects.items() if effect.names_a_gap and effect.repeats and not effect.copy_of)
         return tuple(name for name in gaps if not redundant(self.bound, self.effects[name]))
 
     @cached_property

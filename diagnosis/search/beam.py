@@ -1,7 +1,7 @@
 """The search for what is missing: single effects, then pairs and triples from the best of each size, every one fitted with the plant."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.exchange import exchange, fit_twins
+from diagnosis.search.draughts import with_noise_beside
+from diagnosis.search.exchange import exchange, fit_twins, is_twin
 from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
 from diagnosis.search.own_events import with_own_events
 from jobs.thread_map import thread_map
@@ -77,13 +78,15 @@ def alone(
     _fit_all(case, jobs, found, first)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
-    fit_twins(case, found)
+    if found:
+        fit_twins(case, found, _best(found))
     return Alone(found, first, worth, linearisation, tuple(score_tests))
 
 
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
     """Fit pairs and triples of `names` that grow from the single effects."""
     found, first, worth = dict(begun.found), begun.nominal, begun.worth
+    _colour(case, found)
     for beam in decisions.BEAM:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
@@ -91,13 +94,33 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         if not grown or not _fit_all(case, grown, found, best[0]):
             break
         exchange(case, found, worth)
-        if max(found.values(), key=lambda entry: entry.evidence).evidence <= best[0].evidence:
+        fit_twins(case, found, _best(found))
+        _colour(case, found)
+        if _best(found).evidence <= best[0].evidence:
             break
     _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry, found)]
     fitted = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
     rules = _rules(found, certain, fitted[0])
     return Search(tuple(fitted), first, bool(certain), begun.linearisation, begun.score_tests, rules)
+
+
+def _best(found: Mapping[frozenset[str], FittedHypothesis]) -> FittedHypothesis:
+    return max(found.values(), key=lambda entry: entry.evidence)
+
+
+def with_twins(case: Case, told: Search, first: FittedHypothesis) -> Search:
+    """The search with what is hardly told from `first`, fitted where that was not tried; itself where nothing is likelier for it.
+
+    What is told first may be another than what the search found best: the hold-out has a say in that.
+    """
+    found = {frozenset(entry.effects): entry for entry in told.fitted}
+    known = len(found)
+    ends = [with_noise_beside(case, entry) for entry in fit_twins(case, found, first)]
+    kept = [entry for entry in ends if _certain(entry, found)]
+    if len(found) == known or not kept:
+        return told
+    return replace(told, fitted=tuple(sorted([*told.fitted, *kept], key=lambda entry: -entry.evidence)))
 
 
 def _rules(
@@ -147,14 +170,23 @@ def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> li
     return [Job(start, entry) for entry in score_tests if entry.gain > least]
 
 
+def _colour(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
+    """The best and what is hardly told from it, each with the noise with a memory that is left beside it: what grows from them inherits
+    it, and white noise alone prefers names that colour it."""
+    if not found:
+        return
+    best = _best(found)
+    asked = [best, *(entry for entry in found.values() if is_twin(case, entry, best))]
+    keep_better(found, thread_map(lambda entry: with_noise_beside(case, entry), asked))
+
+
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
-    """Once more the best of all, until effect and process noise agree: a fit not yet at its end would lose to one with an idle effect."""
+    """Once more the best of all, until effects and all noise agree: a fit not yet at its end would lose to one with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
-    for entry in thread_map(lambda fitted: refined(case, fitted), best[: decisions.SETTLED_FITS]):
-        if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
-            found[frozenset(entry.effects)] = entry
-    settled = [found[frozenset(entry.effects)] for entry in best[: decisions.SETTLED_FITS]]
-    keep_better(found, [with_own_events(case, entry) for entry in settled])
+    asked = best[: decisions.SETTLED_FITS]
+    keep_better(found, [end for end in thread_map(lambda entry: refined(case, entry), asked) if end])
+    settled = [found[frozenset(entry.effects)] for entry in asked]
+    keep_better(found, thread_map(lambda entry: with_noise_beside(case, with_own_events(case, entry)), settled))
 
 
 def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:

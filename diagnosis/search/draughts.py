@@ -8,6 +8,7 @@ from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from records.reasons import Decision
@@ -41,6 +42,19 @@ def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tupl
 def beyond_noise(case: Case, hypothesis: Hypothesis) -> list[str]:
     """The torques that come and go and are larger than noise is: part of the gap."""
     return [name for name, share in gust_shares(case, hypothesis).items() if share > decisions.USUAL_GUST]
+
+
+def with_noise_beside(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
+    """The hypothesis with the noise with a memory that the logs tell of beside its names, where that is likelier and no torque that comes
+    and goes is more than noise; else itself.
+
+    Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque.
+    """
+    found = with_memory(case, fitted.fit)
+    if found is fitted.fit or beyond_noise(case, found.hypothesis):
+        return fitted
+    told = as_fitted(case, found)
+    return told if told.evidence > fitted.evidence else fitted
 
 
 def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:

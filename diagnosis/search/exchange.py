@@ -29,24 +29,39 @@ def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: S
         best = found[frozenset(better.effects)] = better
 
 
-def fit_twins(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
-    """Effects that data hardly tell from the best single one, where they are not `found` yet, fitted in its place.
+def fit_twins(
+    case: Case, found: dict[frozenset[str], FittedHypothesis], first: FittedHypothesis
+) -> list[FittedHypothesis]:
+    """Effects that data hardly tell from one of the `first` hypothesis, where they are not `found` yet, fitted in its place and to the end:
+    these, which are then found too.
 
-    Score tests are taken from a plant without any effect, whose numbers are bent to take its part: there only one of a few that are alike
-    may promise much.
+    Score tests are taken under numbers and noise that are bent to take an effect's part: there only one of a few that are alike may
+    promise much, and which noise is left beside it decides between them.
     """
-    best = max(found.values(), key=lambda entry: entry.evidence, default=None)
-    if best is None or len(best.effects) != 1:
-        return
-    (name,) = best.effects
-    own = case.library.effects[name].twins
-    twins = {t for t in case.library.candidates if t in own or name in case.library.effects[t].twins}
-    untried = {twin for twin in twins if frozenset((twin,)) not in found}
-    begun = [
-        entry for entry in thread_map(lambda job: at_its_place(case, job), _instead(case, best, name, untried)) if entry
+    jobs = [
+        job
+        for name in first.effects
+        for job in _instead(case, first, name, twins_of(case, name))
+        if frozenset(first.effects) - {name} | {job.score_test.effect} not in found
     ]
+    begun = [entry for entry in thread_map(lambda job: at_its_place(case, job), jobs) if entry]
     ends = [entry for entry in thread_map(lambda entry: refined(case, entry), begun) if entry]
-    keep_better(found, [*begun, *ends])
+    fresh: dict[frozenset[str], FittedHypothesis] = {}
+    keep_better(fresh, [*begun, *ends])
+    found.update(fresh)
+    return list(fresh.values())
+
+
+def twins_of(case: Case, name: str) -> set[str]:
+    """The candidates that data hardly tell from an effect, whichever of both says so."""
+    own = case.library.effects[name].twins
+    return {twin for twin in case.library.candidates if twin in own or name in case.library.effects[twin].twins}
+
+
+def is_twin(case: Case, one: FittedHypothesis, other: FittedHypothesis) -> bool:
+    """Whether two hypotheses differ by one effect that data hardly tell from that in its place."""
+    mine, others = set(one.effects) - set(other.effects), set(other.effects) - set(one.effects)
+    return len(mine) == len(others) == 1 and mine <= twins_of(case, others.pop())
 
 
 def _exchanged(

@@ -14,6 +14,7 @@ from sim.paths.output_stages import OutputDelay
 from sim.prior import COMMON, UNSEEN_LOSSES
 
 LATE = EffectParameter("tau", "s", 0.0, 0.5, 0.01, 0.0, (0.005, 0.02, 0.05), role=Role.LATENESS)
+THROUGH = "in a loop on the angle, being late is the same before and behind the plant"
 JITTER = EffectParameter("jitter", "s", 0.0, 0.1, 0.0, None, (0.0, 1e-3), refining=True, role=Role.JITTER)
 
 
@@ -29,9 +30,9 @@ def effects(model: Model) -> Iterator[Effect]:
             if len(inputs) == 1
             else "together they are the loop's delay"
         )
-        yield _input_delay(
-            "loop", f"delay of {names}", tuple(range(len(inputs))), {f"{place}.delay": story for place in inputs}
-        )
+        delays = {f"{place}.delay": story for place in inputs}
+        only = next(iter(delays)) if len(inputs) == 1 else ""
+        yield _input_delay("loop", f"delay of {names}", tuple(range(len(inputs))), delays, only)
     for place, sensor in model.places.sensors.items():
         output = [*model.outputs].index(sensor.output)
         yield Effect(
@@ -47,12 +48,14 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             twins={
                 f"{place}.lag": "slow motion shows only the mean time by which both are late",
-                "loop.delay": "in a loop on the angle, being late is the same before and behind the plant",
+                **dict.fromkeys(["loop.delay", *(f"{before}.delay" for before in inputs)], THROUGH),
             },
         )
 
 
-def _input_delay(place: str, depends: str, columns: tuple[int, ...], twins: dict[str, str]) -> Effect:
+def _input_delay(
+    place: str, depends: str, columns: tuple[int, ...], twins: dict[str, str], copy_of: str = ""
+) -> Effect:
     return Effect(
         name=f"{place}.delay",
         depends=depends,
@@ -63,6 +66,7 @@ def _input_delay(place: str, depends: str, columns: tuple[int, ...], twins: dict
         prior=COMMON,
         on_input=lambda values: Delay(columns, values["tau"]),
         twins=twins,
+        copy_of=copy_of,
     )
 
 

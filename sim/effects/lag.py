@@ -20,6 +20,7 @@ from sim.paths.output_stages import OutputLag
 from sim.prior import COMMON, UNSEEN_LOSSES, Unlikely
 
 LATE = "slow motion shows only the mean time by which both are late"
+THROUGH = "where the plant is linear and nothing disturbs it, a lag before it is one behind it"
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -47,7 +48,9 @@ def effects(model: Model) -> Iterator[Effect]:
                 "The rotor takes its time to reach the speed that the command asks for.",
                 "inertia of the rotor",
                 {f"{place}.lag": SAME, f"{place}.delay": LATE},
+                copy_of=f"{place}.lag",
             )
+    before = [f"{place}.lag" for place in (*model.places.inputs, *model.places.rotors)]
     for place, sensor in model.places.sensors.items():
         output = [*model.outputs].index(sensor.output)
         state = f"{sensor.output}_read"
@@ -61,7 +64,7 @@ def effects(model: Model) -> Iterator[Effect]:
             prior=COMMON,
             filter_state=FilterState(state, partial(_read_late, state, sensor.output), follows=sensor.output),
             on_output=lambda values, output=output: OutputLag(output, values["tau"]),
-            twins={f"{place}.delay": LATE, "loop.delay": LATE},
+            twins={f"{place}.delay": LATE, "loop.delay": LATE} | dict.fromkeys(before, THROUGH),
         )
 
 
@@ -77,6 +80,7 @@ def _lag(
     source: str,
     twins: dict[str, str],
     unlikely: Unlikely | None = None,
+    copy_of: str = "",
 ) -> Effect:
     tau = EffectParameter("tau", "s", 0.0, 2.0, reference, 0.0, (0.02, 0.1, 0.3), role=Role.LATENESS, unlikely=unlikely)
     # Two equal lags have one answer more than those of a quotient by their difference.
@@ -91,6 +95,7 @@ def _lag(
         prior=COMMON,
         on_input=lambda values: Lag(column, values["tau"], values.get("b", 0.0)),
         twins=twins,
+        copy_of=copy_of,
     )
 
 
