@@ -378,6 +378,7 @@ NEARLY_ALL_GONE = Limit(
     "real rigs; development cases of the sealed generator, seeds 21 and 22",
 )
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
+LIKELIER_THAN_NOT = Limit(0.5, "probability", "likelier than all else together")
 NO_FAVOUR = Limit(0.0, "1", "as much speaks for a name as against it")
 CONTRADICTION = Limit(
     150.0,

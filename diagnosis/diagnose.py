@@ -247,7 +247,8 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted)
     seen = seen.because(*rules, *doubts.decisions, *named_rules)
     if holdout is not None:
-        chosen, told, rules = added(holdout, chosen)
+        share = weighed.probabilities[0] if chosen.effects else 1.0
+        chosen, told, rules = added(holdout, chosen, share)
         seen, notes = seen.because(*rules), (*notes, *told)
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
 

@@ -109,6 +109,13 @@ def _predicts_worse(note: Note) -> str:
     return f"with {note.subject} the hold-out is predicted {times:.2f} times as far off as without, so the model stays without it"
 
 
+def _unsure(note: Note) -> str:
+    return (
+        f"{note.subject} is less likely than all else together ({note.numbers['probability']:.2f}), and that it predicts the hold-out better "
+        f"({note.numbers['gain_nats']:.3f} +- {note.numbers['sd_nats']:.3f} nats a reading) may be chance, so the model stays without it"
+    )
+
+
 def _another_plant(note: Note) -> str:
     return (
         f"these may be logs of another plant: beside every effect a parameter stays {note.numbers['deviations']:.0f} standard "
@@ -167,6 +174,7 @@ _SENTENCES: Mapping[str, Callable[[Note], str]] = {
     "contradiction": _contradiction,
     "knows_nothing": _knows_nothing,
     "predicts_worse": _predicts_worse,
+    "unsure": _unsure,
     "own_events": _own_events,
     "another_plant": _another_plant,
     "something_else_missing": _something_else_missing,

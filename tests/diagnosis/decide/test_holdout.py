@@ -109,11 +109,11 @@ def test_what_the_hold_out_has_is_surely_better_and_what_it_has_not_surely_worse
     assert told.gain > decisions.SURELY * told.sd
     assert favour(told) > 0.5
     assert notes == ()
-    assert added(with_rub, rubbing())[0].effects == tuple(RUB)
+    assert added(with_rub, rubbing(), 0.1)[0].effects == tuple(RUB)
     assert surely_better(with_rub, [rubbing()])[0]
 
     _, without = judged(arm_log(seed=34))
-    (told, _, _), (chosen, notes, rules) = asked(without, rubbing()), added(without, rubbing())
+    (told, _, _), (chosen, notes, rules) = asked(without, rubbing()), added(without, rubbing(), 0.9)
     assert told.gain < -decisions.SURELY * told.sd
     assert favour(told) < -0.5
     assert (chosen is without.base, [note.kind for note in notes]) == (True, ["predicts_worse"])
@@ -141,6 +141,16 @@ def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     assert of_consequence(seen, result)[1]
 
 
+def test_what_is_unlikely_is_added_only_where_the_hold_out_is_surely_better_for_it() -> None:
+    # Truth: a rub too small for a second to show, of the plant that rubs not at all.
+    _, holdout = judged(arm_log(seed=36))
+    hardly = supposing({"arm.coulomb": {"b": 1e-9}})
+    assert abs(holdout.score(hardly.fit.hypothesis).gain) < decisions.MATTERS
+    assert added(holdout, hardly, 0.51)[0].effects == ("arm.coulomb",)
+    chosen, notes, rules = added(holdout, hardly, 0.49)
+    assert (chosen is holdout.base, [note.kind for note in notes], rules[0].outcome) == (True, ["unsure"], "nothing added")
+
+
 def test_what_leaves_most_of_the_hold_outs_error_is_told_to_be_a_part() -> None:
     # Truth: the hold-out's rig rubs ten times as much as the one that was fitted.
     _, holdout = judged(arm_log({"arm.coulomb": {"b": 4e-3}}, seed=35))
@@ -156,7 +166,7 @@ def test_a_log_that_says_nothing_of_a_name_speaks_neither_way_and_it_is_added() 
     push = {"arm.disturbance": {"torque": 2e-3, "t_0": 12.0, "duration": 1.0}}
     told = holdout.score(supposing(push).fit.hypothesis)
     assert told.gain == 0.0  # a push of another log foretells nothing
-    assert added(holdout, supposing(push))[0].effects == tuple(push)
+    assert added(holdout, supposing(push), 0.9)[0].effects == tuple(push)
 
 
 def test_noise_is_not_what_is_judged() -> None:

@@ -19,7 +19,7 @@ _REASONS = {
     "too_small": "Something is missing, but too little to matter: with it predictions over a second come hardly closer.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",
     "parameters_alone": "Other values of the plant's own parameters are the likeliest explanation.",
-    "named_not_added": "The likeliest effect predicts the hold-out logs worse, so the model stays without it.",
+    "named_not_added": "The likeliest effect does not predict the hold-out logs better, so the model stays without it.",
     "unknown_effect": "That no effect of the library is the cause is likelier than any that is.",
 }
 
