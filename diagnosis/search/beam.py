@@ -86,16 +86,14 @@ def alone(
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
     """Fit pairs and triples of `names` that grow from the single effects."""
     found, first, worth = dict(begun.found), begun.nominal, begun.worth
-    _colour(case, found)
     for beam in decisions.BEAM:
         size = max((len(chosen) for chosen in found), default=0)
-        best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
+        best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown, worth = _grown(case, best, names, worth)
         if not grown or not _fit_all(case, grown, found, best[0]):
             break
         exchange(case, found, worth)
         fit_twins(case, found, _best(found))
-        _colour(case, found)
         if _best(found).evidence <= best[0].evidence:
             break
     _settle(case, found)
@@ -148,9 +146,11 @@ def _worth(score_tests: Sequence[ScoreTest]) -> frozenset[str]:
     return frozenset(entry.effect for entry in best if entry.gain > decisions.LEAST_GAIN)
 
 
-def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count: int) -> list[FittedHypothesis]:
-    """The hypotheses that are worth a further effect, best evidence first; the last place is the likeliest's,
-    whatever its prior chi-squared.
+def beam_of(
+    case: Case, fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count: int
+) -> list[FittedHypothesis]:
+    """The hypotheses that are worth a further effect, best evidence first; of those that are hardly told apart the best, as the same
+    grows beside them; the last place is the likeliest's, whatever its prior chi-squared.
 
     Where a second effect is missing, parameters bend to take its part: then a right first effect shows in its likelihood alone.
     """
@@ -161,7 +161,11 @@ def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count
     near = ranked[0].evidence - max(
         decisions.CLOSE_PAIR, decisions.CLOSE_PAIR_SHARE * (ranked[0].evidence - nominal.evidence)
     )
-    kept = [entry for entry in ranked[:count] if len(entry.effects) == 1 or entry.evidence > near]
+    kept: list[FittedHypothesis] = []
+    for entry in ranked:
+        if len(kept) == count or (len(entry.effects) > 1 and entry.evidence <= near):
+            break
+        kept += [] if any(is_twin(case, entry, other) for other in kept) else [entry]
     return kept if count < 3 or likeliest in kept else [*kept[: count - 1], likeliest]
 
 
@@ -170,23 +174,25 @@ def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> li
     return [Job(start, entry) for entry in score_tests if entry.gain > least]
 
 
-def _colour(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
-    """The best and what is hardly told from it, each with the noise with a memory that is left beside it: what grows from them inherits
-    it, and white noise alone prefers names that colour it."""
-    if not found:
-        return
-    best = _best(found)
-    asked = [best, *(entry for entry in found.values() if is_twin(case, entry, best))]
-    keep_better(found, thread_map(lambda entry: with_noise_beside(case, entry), asked))
-
-
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     """Once more the best of all, until effects and all noise agree: a fit not yet at its end would lose to one with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
     asked = best[: decisions.SETTLED_FITS]
     keep_better(found, [end for end in thread_map(lambda entry: refined(case, entry), asked) if end])
     settled = [found[frozenset(entry.effects)] for entry in asked]
-    keep_better(found, thread_map(lambda entry: with_noise_beside(case, with_own_events(case, entry)), settled))
+    keep_better(found, thread_map(lambda entry: with_own_events(case, entry), settled))
+    finalists = _finalists(case, [found[frozenset(entry.effects)] for entry in best])
+    keep_better(found, thread_map(lambda entry: with_noise_beside(case, entry), finalists))
+
+
+def _finalists(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
+    """The best of each number of effects and what is hardly told from it: between these noise decides. While hypotheses grow it must not:
+    noise with a memory follows what a further effect would explain."""
+    found = []
+    for size in sorted({len(entry.effects) for entry in fitted}):
+        own = sorted((entry for entry in fitted if len(entry.effects) == size), key=lambda entry: -entry.evidence)
+        found += [own[0], *(entry for entry in own[1:] if is_twin(case, entry, own[0]))]
+    return found
 
 
 def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:

@@ -59,7 +59,7 @@ def twins_of(case: Case, name: str) -> set[str]:
 
 
 def is_twin(case: Case, one: FittedHypothesis, other: FittedHypothesis) -> bool:
-    """Whether two hypotheses differ by one effect that data hardly tell from that in its place."""
+    """Whether two hypotheses differ by one effect that data hardly tell from the other one."""
     mine, others = set(one.effects) - set(other.effects), set(other.effects) - set(one.effects)
     return len(mine) == len(others) == 1 and mine <= twins_of(case, others.pop())
 

@@ -27,6 +27,8 @@ STEP_FINELY = (
     2e-4,
     4e-5,
 )  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
+REFINED_ROUNDS = 5
+VANISHED = 0.02  # of where a shape's search begins: so near none its slopes vanish
 LEVELS = np.geomspace(
     0.5, 2.0, 7
 )  # of a friction that holds an axis: where it holds, slopes do not tell what more of it would do
@@ -77,8 +79,21 @@ def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
         start = _polished(case, start, name, STEP_FINELY) if _is_rough(case, name) else start
     for name in holding(case.library, fitted.effects):
         start = _likeliest(case, start, name, LEVELS)
-    found = fit(case, start, rounds=5)
+    found = fit(case, start, rounds=REFINED_ROUNDS)
+    for begun in [] if found is None else _rounder(case, found.hypothesis):
+        found = _likelier(found, fit(case, begun, rounds=REFINED_ROUNDS))
     return None if found is None else as_fitted(case, found)
+
+
+def _rounder(case: Case, hypothesis: Hypothesis) -> list[Hypothesis]:
+    """The hypothesis with each shape that vanished at its start again: a corner that is sharp has no slope by how round it is."""
+    return [
+        hypothesis.with_value(name, parameter.symbol, parameter.starts[-1])
+        for name in case.added(hypothesis.effects)
+        for parameter in case.library.effects[name].parameters
+        if parameter.refining and parameter.role is Role.NUMBER and not parameter.rough
+        if parameter.starts and hypothesis.effects[name][parameter.symbol] < VANISHED * parameter.starts[-1]
+    ]
 
 
 def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:

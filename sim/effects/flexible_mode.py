@@ -33,8 +33,15 @@ def effects(model: Model) -> Iterator[Effect]:
             source="two masses and a spring",
             prior=COMMON,
             edit=lambda model, gain, omega_n, zeta, axis=axis: _edit(model, gain, omega_n, zeta, axis),
-            twins={f"{axis}.rotor_acceleration": "both answer to fast changes of the drive"} if entry.spun_by else {},
+            twins=_twins(model, axis),
         )
+
+
+def _twins(model: Model, axis: str) -> dict[str, str]:
+    entry = model.places.axes[axis]
+    read = [place for place, sensor in model.places.sensors.items() if sensor.output == entry.angle]
+    late = dict.fromkeys((f"{place}.lag" for place in (*read, *model.places.inputs)), "a slow part of gain 1 reads late")
+    return late | ({f"{axis}.rotor_acceleration": "both answer to fast changes of the drive"} if entry.spun_by else {})
 
 
 def _edit(model: Model, gain: sympy.Symbol, omega_n: sympy.Symbol, zeta: sympy.Symbol, axis: str) -> Model:
