@@ -16,7 +16,7 @@ from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred, surely_better
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.unknown import left_beside
-from diagnosis.decide.weighing import Weighed, likeliest, weigh
+from diagnosis.decide.weighing import Weighed, first_share, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.detection import detect, form_scores
@@ -244,11 +244,11 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     weighed, told, rules = _favoured(seen, holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
     doubts = doubt(seen.case, found, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *told)
-    chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted)
+    share = first_share(seen.case, weighed)
+    chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted, share)
     seen = seen.because(*rules, *doubts.decisions, *named_rules)
     if holdout is not None:
-        share = weighed.probabilities[0] if chosen.effects else 1.0
-        chosen, told, rules = added(holdout, chosen, share)
+        chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)
         seen, notes = seen.because(*rules), (*notes, *told)
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
 

@@ -37,7 +37,9 @@ class Exit(Enum):
     TOO_SMALL = "too_small"  # a gap whose explanations change no prediction by enough to matter
     EFFECT_ADDED = "effect_added"
     PARAMETERS_ALONE = "parameters_alone"
-    NAMED_NOT_ADDED = "named_not_added"  # the likeliest effect predicts the hold-out worse, or is unlikely and not surely better there
+    NAMED_NOT_ADDED = (
+        "named_not_added"  # the likeliest effect predicts the hold-out worse, or is unlikely and not better there
+    )
     UNKNOWN_EFFECT = "unknown_effect"
 
 

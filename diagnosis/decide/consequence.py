@@ -94,9 +94,7 @@ def _one_less(entry: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> Fit
     return max(fewer, key=lambda other: other.evidence, default=None)
 
 
-def _better(
-    case: Case, judged: dict[Hypothesis, Errors], entry: FittedHypothesis, other: FittedHypothesis
-) -> Errors:
+def _better(case: Case, judged: dict[Hypothesis, Errors], entry: FittedHypothesis, other: FittedHypothesis) -> Errors:
     """The errors of a hypothesis under its own noise or under that of the other, whichever predicts better: noise is not what is asked."""
     own = entry.fit.hypothesis
     if own not in judged:

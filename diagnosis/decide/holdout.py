@@ -235,15 +235,15 @@ def added(
     holdout: Holdout, first: FittedHypothesis, probability: float
 ) -> tuple[FittedHypothesis, tuple[Note, ...], tuple[Decision, ...]]:
     """What is to be added: what has more than half of all `probability` unless the hold-out is predicted worse by it, what has less only
-    where that is surely predicted better; else the plant without it, as is told then."""
+    where that is predicted better; else the plant without it, as is told then."""
     told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
     likely = probability > decisions.LIKELIER_THAN_NOT
-    least = -float(decisions.MATTERS) if likely else decisions.SURELY * told.sd
-    short = told.gain < least if likely else not is_surely_better(told)
+    least = -float(decisions.MATTERS) if likely else float(decisions.MATTERS)
+    short = told.gain < least
     rule = held_against("added", of, told.gain, least, NATS, "nothing added" if short else "added")
     if not short:
         return first, (), (rule,)
-    lost = {"worse_nats": -told.gain / _outputs(holdout.case)}
-    unsure = {"probability": probability, "gain_nats": -lost["worse_nats"], "sd_nats": told.sd / _outputs(holdout.case)}
-    note = Note("predicts_worse", of, lost) if likely or told.gain < -decisions.MATTERS else Note("unsure", of, unsure)
-    return holdout.base, (note,), (rule,)
+    gain_nats = told.gain / _outputs(holdout.case)
+    unsure = Note("unsure", of, {"probability": probability, "gain_nats": gain_nats})
+    worse = told.gain < -decisions.MATTERS
+    return holdout.base, (Note("predicts_worse", of, {"worse_nats": -gain_nats}) if worse else unsure,), (rule,)

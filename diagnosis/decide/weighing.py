@@ -10,6 +10,8 @@ from diagnosis import decisions
 from diagnosis.decide.prior import prior_odds
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
+from diagnosis.hypothesis.case import Case
+from diagnosis.search.exchange import is_twin
 from records.reasons import Decision
 from sim.effect import Effect
 
@@ -157,18 +159,24 @@ def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
 
 
 def likeliest(
-    weighed: Weighed, stated: FittedHypothesis, beyond: FittedHypothesis | None
+    weighed: Weighed, stated: FittedHypothesis, beyond: FittedHypothesis | None, share: float
 ) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
-    """The most probable hypothesis or re-tune if it beats an unknown effect, else the plant as `stated`."""
-    known, rival = sum(weighed.probabilities), max(weighed.unknown, weighed.retune)
-    if weighed.fitted and known > rival:
+    """The most probable hypothesis or re-tune if it beats an unknown effect, else the plant as `stated`; `share` as of `first_share`."""
+    rival = max(weighed.unknown, weighed.retune)
+    if share > rival:
         return weighed.fitted[0], (
-            held_against("named_over_unknown", named(weighed), known, rival, "probability", "named"),
+            held_against("named_over_unknown", named(weighed), share, rival, "probability", "named"),
         )
     retuned = beyond is not None and weighed.retune > weighed.unknown
     outcome = "parameters" if retuned else "unknown"
-    told = held_against("named_over_unknown", named(weighed), known, rival, "probability", outcome)
+    told = held_against("named_over_unknown", named(weighed), share, rival, "probability", outcome)
     return beyond if beyond is not None and retuned else stated, (told,)
+
+
+def first_share(case: Case, weighed: Weighed) -> float:
+    """How probable the first name is together with what data can hardly tell from it: either of them says what is missing."""
+    told = zip(weighed.fitted, weighed.probabilities, strict=True)
+    return sum(p for entry, p in told if entry is weighed.fitted[0] or is_twin(case, entry, weighed.fitted[0]))
 
 
 def named(weighed: Weighed) -> str:

@@ -111,8 +111,8 @@ def _predicts_worse(note: Note) -> str:
 
 def _unsure(note: Note) -> str:
     return (
-        f"{note.subject} is less likely than all else together ({note.numbers['probability']:.2f}), and that it predicts the hold-out better "
-        f"({note.numbers['gain_nats']:.3f} +- {note.numbers['sd_nats']:.3f} nats a reading) may be chance, so the model stays without it"
+        f"{note.subject} is less likely ({note.numbers['probability']:.2f}) than all else together, and the hold-out is hardly predicted "
+        f"better with it ({note.numbers['gain_nats']:.3f} nats a reading), so the model stays without it"
     )
 
 

@@ -40,7 +40,9 @@ def effects(model: Model) -> Iterator[Effect]:
 def _twins(model: Model, axis: str) -> dict[str, str]:
     entry = model.places.axes[axis]
     read = [place for place, sensor in model.places.sensors.items() if sensor.output == entry.angle]
-    late = dict.fromkeys((f"{place}.lag" for place in (*read, *model.places.inputs)), "a slow part of gain 1 reads late")
+    late = dict.fromkeys(
+        (f"{place}.lag" for place in (*read, *model.places.inputs)), "a slow part of gain 1 reads late"
+    )
     return late | ({f"{axis}.rotor_acceleration": "both answer to fast changes of the drive"} if entry.spun_by else {})
 
 

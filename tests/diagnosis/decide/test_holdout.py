@@ -141,14 +141,18 @@ def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     assert of_consequence(seen, result)[1]
 
 
-def test_what_is_unlikely_is_added_only_where_the_hold_out_is_surely_better_for_it() -> None:
+def test_what_is_unlikely_is_added_only_where_the_hold_out_is_better_for_it() -> None:
     # Truth: a rub too small for a second to show, of the plant that rubs not at all.
     _, holdout = judged(arm_log(seed=36))
     hardly = supposing({"arm.coulomb": {"b": 1e-9}})
     assert abs(holdout.score(hardly.fit.hypothesis).gain) < decisions.MATTERS
     assert added(holdout, hardly, 0.51)[0].effects == ("arm.coulomb",)
     chosen, notes, rules = added(holdout, hardly, 0.49)
-    assert (chosen is holdout.base, [note.kind for note in notes], rules[0].outcome) == (True, ["unsure"], "nothing added")
+    assert (chosen is holdout.base, [note.kind for note in notes], rules[0].outcome) == (
+        True,
+        ["unsure"],
+        "nothing added",
+    )
 
 
 def test_what_leaves_most_of_the_hold_outs_error_is_told_to_be_a_part() -> None:
