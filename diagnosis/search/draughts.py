@@ -15,6 +15,7 @@ from records.reasons import Decision
 from sim.effect import Role
 
 STILL_ROUNDS = 6
+BESIDE_ROUNDS = 2  # a name has most of its numbers already
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +51,7 @@ def with_noise_beside(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque.
     """
-    found = with_memory(case, fitted.fit)
+    found = with_memory(case, fitted.fit, BESIDE_ROUNDS)
     if found is fitted.fit or beyond_noise(case, found.hypothesis):
         return fitted
     told = as_fitted(case, found)
