@@ -17,14 +17,14 @@ from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
 from diagnosis.validate.prediction import predictions, windows
-from diagnosis.validate.score import Errors, Score, as_noisy, errors_of, score
+from diagnosis.validate.score import DRAWS, Errors, Score, as_noisy, drawn_gains, errors_of, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note
 from records.table import ControllerTable
 
 NATS = "nats a reading"
-MOST_NATS = 500.0  # more than that no number holds once it is a factor
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Holdout:
     base: FittedHypothesis
     notes: tuple[Note, ...] = ()
     decisions: tuple[Decision, ...] = ()
-    read: dict[Hypothesis, list[NDArray[np.float64]]] = field(default_factory=dict)
+    read: dict[Hypothesis, list[Array]] = field(default_factory=dict)
     judged: dict[Hypothesis, Errors] = field(default_factory=dict)
     ways: dict[Hypothesis, Hypothesis] = field(default_factory=dict)
 
@@ -79,6 +79,13 @@ class Holdout:
             return Score(0.0, 0.0, 0.0)
         return score(self._errors(foreseen), self._errors(self.base.fit.hypothesis))
 
+    def drawn(self, hypothesis: Hypothesis) -> Array:
+        """The gain of `score` over each draw of the logs' windows, the same for all hypotheses."""
+        foreseen = self.foreseen(hypothesis)
+        if self._named(hypothesis) and not self._named(foreseen):
+            return np.zeros(DRAWS)
+        return drawn_gains(self._errors(foreseen), self._errors(self.base.fit.hypothesis))
+
     def _named(self, hypothesis: Hypothesis) -> list[str]:
         """The effects of a hypothesis that `base` lacks, noise apart."""
         return [
@@ -97,7 +104,7 @@ class Holdout:
         ratios = [told.rms_after[name] / floor for name, floor in told.rms_floor.items() if floor > 0.0]
         return float(np.log(max(ratios, default=1.0)))
 
-    def _read(self, hypothesis: Hypothesis) -> list[NDArray[np.float64]]:
+    def _read(self, hypothesis: Hypothesis) -> list[Array]:
         if hypothesis not in self.read:
             self.read[hypothesis] = [predictions(self.case, flight, hypothesis) for flight in self.case.flights]
         return self.read[hypothesis]
@@ -160,7 +167,11 @@ def overruled(holdout: Holdout, weighed: Weighed, gained: float, left: float) ->
 def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:
     """The names in the order of what both the training logs and these say: what one predicts better counts in nats for each second, as
     readings within one share their errors. Nothing was fitted to these, so that no form a little off the truth gains there: their nats
-    need no scale (weighing.py)."""
+    need no scale (weighing.py).
+
+    So few windows may prefer either by chance: probabilities are the mean over draws of the windows (pseudo-BMA+, Yao, Vehtari, Simpson
+    and Gelman 2018).
+    """
     chosen = [
         index for index, p in enumerate(weighed.probabilities[: decisions.PREFERRED]) if p >= decisions.LEAST_PREFERRED
     ]
@@ -168,9 +179,12 @@ def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decisi
         return weighed, ()
     told = [holdout.score(weighed.fitted[index].fit.hypothesis) for index in chosen]
     seconds = sum(len(windows(flight.log.t_s)) for flight in holdout.case.flights)
+    shares = np.array([weighed.probabilities[index] for index in chosen])
+    gains = np.stack([holdout.drawn(weighed.fitted[index].fit.hypothesis) for index in chosen])
+    logs = np.log(shares)[:, None] + seconds * gains
+    drawn = np.exp(logs - logs.max(axis=0))
     factors = np.ones(len(weighed.fitted))
-    nats = np.array([seconds * (entry.gain - told[0].gain) for entry in told])
-    factors[chosen] = np.exp(np.clip(nats, -MOST_NATS, MOST_NATS))
+    factors[chosen] = shares.sum() * np.mean(drawn / drawn.sum(axis=0), axis=1) / shares
     rules = tuple(
         held_against(
             "hold_out_prefers",
@@ -178,7 +192,7 @@ def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decisi
             entry.gain,
             told[0].gain,
             NATS,
-            "likelier" if entry.gain > told[0].gain else "less likely",
+            "likelier" if factors[index] > factors[chosen[0]] else "less likely",
         )
         for index, entry in zip(chosen[1:], told[1:], strict=True)
     )

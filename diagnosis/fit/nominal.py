@@ -49,12 +49,12 @@ def settled(case: Case, start: Hypothesis) -> Fit:
     return found
 
 
-def with_memory(case: Case, found: Fit, rounds: int = SETTLING_ROUNDS) -> Fit:
-    """The fit with noise with a memory where the logs tell of it; parameters and noises give way to each other so many times at most."""
+def with_memory(case: Case, found: Fit) -> Fit:
+    """The fit with noise with a memory where the logs tell of it."""
     coloured = with_colours(case, found)
     if coloured is found.hypothesis:
         return found
-    for _ in range(rounds):
+    for _ in range(SETTLING_ROUNDS):
         again = fit(case, coloured_noise_of(case, coloured), rounds=NOMINAL_ROUNDS)
         if again is None:
             break

@@ -11,11 +11,11 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
+from diagnosis.search.fitting import once_more
 from records.reasons import Decision
 from sim.effect import Role
 
 STILL_ROUNDS = 6
-BESIDE_ROUNDS = 2  # a name has most of its numbers already
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +51,10 @@ def with_noise_beside(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque.
     """
-    found = with_memory(case, fitted.fit, BESIDE_ROUNDS)
+    found = with_memory(case, fitted.fit)
     if found is fitted.fit or beyond_noise(case, found.hypothesis):
         return fitted
-    told = as_fitted(case, found)
+    told = once_more(case, as_fitted(case, found))
     return told if told.evidence > fitted.evidence else fitted
 
 

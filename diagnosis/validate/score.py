@@ -78,18 +78,32 @@ def errors_of(case: Case, hypothesis: Hypothesis, read: Callable[[Hypothesis], S
 
 def score(model: Errors, other: Errors) -> Score:
     """By how much `model` predicts better than `other`; the standard error is that of windows drawn with replacement."""
-    known = np.isfinite(model.squares) & np.isfinite(other.squares)
+    known, weights = _drawn(model, other)
     if not known.any():
         return Score(0.0, np.inf, 0.0)
+    gains = _gains(model, other, known, weights)
+    own, best = (_log_rms(square, known, weights[:1]) for square in (model.squares, model.attainable))
+    return Score(float(gains[0]), float(np.std(gains[1:])), float(_total(own - best)[0]))
+
+
+def drawn_gains(model: Errors, other: Errors) -> Array:
+    """The gain of `score` over each draw of windows (DRAWS,), the same windows for every model of the same logs."""
+    known, weights = _drawn(model, other)
+    return _gains(model, other, known, weights)[1:] if known.any() else np.zeros(DRAWS)
+
+
+def _drawn(model: Errors, other: Errors) -> tuple[NDArray[np.bool_], Array]:
+    """What both models' errors are known of, and how often each window counts: once, then as drawn with replacement."""
+    known = np.isfinite(model.squares) & np.isfinite(other.squares)
     count = len(known)
     rng = np.random.default_rng(SEED)
-    drawn = np.stack([np.bincount(rng.integers(0, count, count), minlength=count) for _ in range(DRAWS)])
-    weights = np.concatenate([np.ones((1, count)), drawn])
-    own, theirs, best = (
-        _log_rms(square, known, weights) for square in (model.squares, other.squares, model.attainable)
-    )
-    gains = _total(theirs - own) + float(np.sum(model.grid - other.grid))
-    return Score(float(gains[0]), float(np.std(gains[1:])), float(_total(own - best)[0]))
+    drawn = [np.bincount(rng.integers(0, max(count, 1), count), minlength=count) for _ in range(DRAWS)]
+    return known, np.concatenate([np.ones((1, count)), np.stack(drawn)])
+
+
+def _gains(model: Errors, other: Errors, known: NDArray[np.bool_], weights: Array) -> Array:
+    own, theirs = (_log_rms(square, known, weights) for square in (model.squares, other.squares))
+    return _total(theirs - own) + float(np.sum(model.grid - other.grid))
 
 
 def as_noisy(case: Case, hypothesis: Hypothesis, other: Hypothesis) -> Hypothesis:

@@ -202,6 +202,14 @@ def test_of_two_names_the_one_that_predicts_better_gains() -> None:
     assert found.unknown == weighed.unknown
 
 
+def test_what_chance_may_prefer_keeps_its_share() -> None:
+    # Truth: neither rub nor drag shows in these logs, so that one predicts as the other.
+    _, holdout = judged(arm_log(seed=38))
+    alike = (supposing({"arm.quadratic_drag": {"c": 1e-12}}), supposing({"arm.coulomb": {"b": 1e-12}}))
+    found, _ = preferred(holdout, Weighed(alike, (0.5, 0.4), 0.1, 0.0, 10.0))
+    assert found.probabilities == pytest.approx((0.5, 0.4), abs=0.02)
+
+
 def test_the_plant_as_stated_is_what_is_judged_against_where_it_surely_predicts_better() -> None:
     training, (case, _) = arm_case(arm_log(seed=31)), judged(arm_log(seed=39))
     right = nominal_fit(training)

@@ -1,0 +1,108 @@
+"""What data hardly tell from a name: fitted in its place, compared under the noise that each leaves, and told beside it."""
+
+from dataclasses import replace
+
+import pytest
+
+from diagnosis.decide.weighing import Weighed, first_share
+from diagnosis.fit.coloured_noise import coloured_noise_of
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.nominal import nominal_fit
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.search.beam import beam_of
+from diagnosis.search.draughts import with_noise_beside
+from diagnosis.search.exchange import fit_twins, is_twin, twins_of
+from diagnosis.search.fitting import refined
+from tests.diagnosis.arm import LONG_S, arm_case, arm_log
+
+# Truth: the drive lags, and a torque of a seventieth of what the arm needs comes and goes within half a second.
+FIRST_NOISE = -1.5
+LAG = {"input.lag": {"tau": 0.1, "b": 0.0}}
+GUST = {"arm.gust": {"sigma": 6e-5, "T": 0.5}}
+
+
+def supposed(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
+    """A hypothesis fitted to its end under white noise, from the arm as stated."""
+    begun = fit(case, nominal_hypothesis(case, FIRST_NOISE).with_effects(effects))
+    assert begun is not None
+    end = refined(case, as_fitted(case, begun))
+    assert end is not None
+    return end
+
+
+def named(*effects: str) -> FittedHypothesis:
+    """Effects alone, as a search has them."""
+    plain = nominal_fit(arm_case(arm_log(seed=31)))
+    return FittedHypothesis(effects, plain, 1.0)
+
+
+@pytest.fixture(scope="module")
+def late() -> Case:
+    return arm_case(arm_log({**LAG, **GUST}, seed=41, seconds=LONG_S))
+
+
+def test_a_lag_before_the_plant_has_the_lag_behind_it_among_its_twins(late: Case) -> None:
+    assert {"theta_sensor.lag", "input.delay", "arm.flexible_mode"} <= twins_of(late, "input.lag")
+    assert is_twin(late, named("input.lag", "arm.coulomb"), named("arm.coulomb", "theta_sensor.lag"))
+    assert not is_twin(late, named("input.lag", "arm.coulomb"), named("input.lag", "arm.offset_force"))
+    assert not is_twin(late, named("input.lag"), named("input.lag", "arm.coulomb"))
+
+
+def test_of_two_names_of_one_thing_a_diagnosis_asks_for_one() -> None:
+    library = arm_case(arm_log(seed=31)).library
+    assert {"rotor.lag", "loop.delay"} <= set(library.effects)
+    assert not {"rotor.lag", "loop.delay"} & set(library.candidates)
+    assert library.effects["rotor.lag"].copy_of == "input.lag"
+
+
+def test_a_smooth_torque_is_noise_and_no_lag_of_the_sensor(late: Case) -> None:
+    # White noise prefers the sensor's lag, which smooths it, to the drive's, which is there. With the torque as noise this hardly speaks
+    # against the drive: before and behind a nearly linear plant a lag is one.
+    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    assert sensor.evidence - drive.evidence > 10.0
+    sensor, drive = (with_noise_beside(late, entry) for entry in (sensor, drive))
+    assert drive.effects == ("input.lag",)
+    assert "arm.gust" in drive.fit.hypothesis.effects
+    assert sensor.evidence - drive.evidence < 3.0
+
+
+def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> None:
+    sensor = with_noise_beside(late, supposed(late, {"theta_sensor.lag": {"tau": 0.1}}))
+    found = {frozenset(sensor.effects): sensor}
+    fresh = fit_twins(late, found, sensor)
+    assert frozenset(("input.lag",)) in found
+    assert {frozenset(entry.effects) for entry in fresh} == set(found) - {frozenset(sensor.effects)}
+    assert fit_twins(late, found, sensor) == []  # all were tried
+
+
+def test_a_beam_holds_what_differs(late: Case) -> None:
+    entries = [
+        replace(named(*effects), evidence=evidence)
+        for effects, evidence in ((("theta_sensor.lag",), 9.0), (("input.lag",), 8.0), (("arm.coulomb",), 7.0))
+    ]
+    kept = beam_of(late, entries, replace(named(), evidence=0.0), 2)
+    assert [entry.effects for entry in kept] == [("theta_sensor.lag",), ("arm.coulomb",)]
+
+
+def test_the_share_of_a_name_is_that_of_what_is_hardly_told_from_it_too(late: Case) -> None:
+    tried = (named("input.lag"), named("theta_sensor.lag"), named("arm.coulomb"))
+    weighed = Weighed(tried, (0.3, 0.2, 0.1), 0.4, 0.0, 10.0)
+    assert first_share(late, weighed) == pytest.approx(0.5)
+
+
+def test_a_corner_that_was_fitted_sharp_is_begun_round_again() -> None:
+    # Truth: a dead band of 0.7 V, rounded over 0.42 V; where a fit has it sharp, its roundness has no slope.
+    band = {"input.deadzone": {"d": 0.7, "w": 0.6}}
+    case = arm_case(arm_log(band, seed=42, seconds=LONG_S))
+    end = supposed(case, {"input.deadzone": {"d": 0.6, "w": 0.0}})
+    assert end.fit.hypothesis.effects["input.deadzone"]["w"] == pytest.approx(0.6, rel=0.25)
+    assert end.fit.hypothesis.effects["input.deadzone"]["d"] == pytest.approx(0.7, rel=0.05)
+
+
+def test_noise_beside_a_name_is_left_alone_where_the_logs_tell_of_none() -> None:
+    case = arm_case(arm_log(LAG, seed=43))
+    plain = supposed(case, LAG)
+    assert with_noise_beside(case, plain) is plain
+    assert coloured_noise_of(case, plain.fit.hypothesis).effects.keys() == plain.fit.hypothesis.effects.keys()
