@@ -45,7 +45,8 @@ def read(path: Path, asked: TextLayout) -> Contents:
     body, left_out = _body(*_without_headers(lines, layout), layout)
     told = (*found, *layout.found, *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
-    return Contents(with_clocks(signals), _sidecar(path), told, unread)
+    singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
+    return Contents(with_clocks(signals), _sidecar(path), told, unread, singles=singles)
 
 
 def _sidecar(path: Path) -> dict[str, str]:
