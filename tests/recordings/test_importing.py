@@ -339,6 +339,15 @@ def test_times_that_look_like_parts_of_a_second_are_remarked(factor: str, unit: 
     assert told in done.found
 
 
+def test_rows_minutes_apart_by_the_dates_of_a_file_are_not_remarked(tmp_path: Path) -> None:
+    """Truth: five minutes between rows, by dates: no millisecond is meant."""
+    rows = "".join(f"2026-10-07 09:{minute:02d}:00;1;0;{minute / 100};0\n" for minute in range(0, 60, 5))
+    (tmp_path / "log.csv").write_text("When;u_M_V;u_T_V;psi_rad;phi_rad\n" + rows)
+    done = imported_here(tmp_path / "log.csv", ColumnMapping())
+    assert done.log.sample_period_s == 300.0
+    assert not any("apart" in told for told in done.found)
+
+
 @pytest.mark.parametrize("suffix", [".mat", ".parquet"])
 def test_a_column_without_samples_is_named(suffix: str, tmp_path: Path) -> None:
     if suffix == ".parquet":
