@@ -152,6 +152,7 @@ def test_what_the_user_says_of_the_layout_is_taken(tmp_path: Path) -> None:
         (b"", "an empty file"),
         (b"t_s,u_V,q_m\n", "'t_s,u_V,q_m', and no row of numbers"),
         (b"hello\nworld\n", "'hello'"),
+        (b"1,2,3,4,5,6,7,8,9,10,11,12\n", "1 row of 12 cells without a header"),
         (b"PK\x03\x04" + bytes(90), "zipped file"),
         (bytes(range(256)) * 9, "no text"),
         (None, "No such file"),
