@@ -3,7 +3,8 @@
 An axis that slows down, rests and leaves its rest starts by less than it moves next. Where the first move behind a stand is far more than
 those after it, the readings between were old. So they were where it came back to where it had been, and no jump shows: an axis that comes
 to rest by an even brake goes three times as far in the second last stretch of time as in the last; one that is cut off, as far. This is
-asked of positions alone, as nothing brakes a current or a rate, and not of an axis that an input sets going as it moves itself.
+asked of positions alone, as nothing brakes a current or a rate, and not of an axis that an input sets going as it moves itself: a current
+or a rate that an input sets going begins with its largest move.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -120,9 +121,12 @@ def _dead(
         arrives = _is_under_way(np.abs(arrived), least)
         driven = _moves_far(u[begin : end + 1], usual_u)
         goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
-        leaps = (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (leaps_out and goes_on)
         set_going = _moves_far(u[max(begin, end - way) : end + 2], usual_u) and not _moves_far(
             u[begin : end - way + 1], usual_u
+        )
+        starts = not has_mass and set_going and not arrives  # a rate leaves its rest by its largest move
+        leaps = (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (
+            leaps_out and goes_on and not starts
         )
         cut_off = has_mass and not leaps and _is_cut_off(t_s, values, begin, end, way, least, begins, set_going)
         if cut_off and not arrives:  # so dense are the rows that a few of them tell no speed

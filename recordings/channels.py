@@ -100,9 +100,13 @@ def _in_order(channel: Channel, name: str, where: str) -> tuple[Array, Array]:
     if late.size or not np.all(np.isfinite(t_s)):
         row = int(late[0]) if late.size else 0
         got = f"{t_s[row + 1] if t_s.size > 1 else t_s[0]:.9g} s in row {row + 2} after {t_s[row]:.9g} s"
-        remedy = (
-            "say --column t_s=0.01*row for rows 10 ms apart; of several recordings in one file give each as its own"
+        period_s = (t_s[-1] - t_s[0]) / (t_s.size - 1)
+        step = (
+            f"{period_s:.6g}*row for rows so far apart on average"
+            if period_s > 0.0
+            else "0.01*row for rows 10 ms apart"
         )
+        remedy = f"say --column t_s={step}; of several recordings in one file give each as its own"
         raise BadInput(f"times of {name}", where, got, "times that increase", remedy)
     return t_s, channel.values
 

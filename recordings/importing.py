@@ -74,7 +74,7 @@ def log_of_contents(
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
     told += [*counted, *late, *before]
-    return Imported(log, used, (*told, *_missing(log), *_doubtful(log)))
+    return Imported(log, used, (*told, *_missing(log), *_doubtful(log, of)))
 
 
 def columns_of(plant: str) -> LogColumns:
@@ -187,10 +187,11 @@ def _range(log: RunLog, name: str) -> str:
     )
 
 
-def _doubtful(log: RunLog) -> list[str]:
+def _doubtful(log: RunLog, of: Source) -> list[str]:
     """Times that look like milliseconds, and angles like degrees or counts, which nothing said to be such."""
     told = []
-    if log.sample_period_s >= SLOW_S:
+    unstated = of.time is not None or not of.clocks or any(not of.signals[clock].unit for clock in of.clocks)
+    if log.sample_period_s >= SLOW_S and unstated:
         unit, factor = finer_unit(log.sample_period_s)
         told.append(f"rows are {log.sample_period_s:g} s apart: if times are in {unit}, say --column t_s=...*{factor}")
     for name in log.columns.outputs:

@@ -4,6 +4,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from recordings.signals import Signal
 from recordings.units import known, suffix_of, unit_of_clock
 
@@ -16,16 +18,24 @@ TIME_NAMES = frozenset(
 def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
     """The signals with their clocks: in the innermost structure around one, the only vector of times as long as it is.
 
-    Times are what is named so; where nothing is, dates and times of day.
+    Times are what is named so; where nothing is, dates and times of day; else what rises in a stated unit of time.
     """
     named = [name for name, signal in signals.items() if signal.values.ndim == 1 and is_time_name(name)]
-    clocks = named or [name for name, signal in signals.items() if signal.instants]
+    dated = [name for name, signal in signals.items() if signal.instants]
+    clocks = named or dated or [name for name, signal in signals.items() if _rises_in_time(signal)]
     return {name: replace(signal, clock=_clock_of(name, signal, signals, clocks)) for name, signal in signals.items()}
+
+
+def _rises_in_time(signal: Signal) -> bool:
+    unit = known(signal.unit) if signal.unit and signal.values.ndim == 1 else None
+    return (
+        unit is not None and unit.si == "s" and signal.values.size > 1 and bool(np.all(np.diff(signal.values) >= 0.0))
+    )
 
 
 def is_time_name(name: str) -> bool:
     """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `t_s`, `millis`."""
-    last = re.split(r"[./]", name)[-1].lower()
+    last = re.split(r"[./]", name)[-1].lower().strip("_")
     if unit_of_clock(last):
         return True
     unit = suffix_of(last)

@@ -105,7 +105,7 @@ def _no_times(of: Source, name: str, length: int) -> BadInput:
     rising = (signal for signal in of.signals if _may_be_times(signal, of.signals[signal], length))
     first = next(rising, "NAME")
     remedy = f"name them with --column {shlex.quote(f'{TIME}={first}')}, or --column {TIME}=0.01*row for rows that are 10 ms apart"
-    got = listed([*of.signals, *texts])
+    got = listed([*of.signals, *texts, *(f"{single} (one number)" for single in of.contents.singles)])
     return BadInput(f"column {TIME!r}", of.where, got, "the times of the samples", remedy)
 
 

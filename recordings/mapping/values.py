@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recordings.mapping.automatic import ambiguous
-from recordings.mapping.evaluation import BadExpression, Node, Quantity, Reference, evaluate
+from recordings.mapping.evaluation import BadExpression, Node, Number, Operation, Quantity, Reference, evaluate
 from recordings.mapping.expression import parse
 from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
@@ -84,11 +84,22 @@ def factor_of(name: str, text: str, quantity: Quantity, of: Source) -> tuple[flo
     try:
         factor = factor_to(si, quantity.unit, of.per_turn)
     except ValueError as error:
+        if "--per-turn" not in str(error) and _says_factor_one(parsed(name, text, of)):
+            return 1.0, f", as typed, in spite of its {quantity.unit}"
         remedy = f"give the factor to {si}: --column {shlex.quote(f'{name}={text}*FACTOR')}"
         if "--per-turn" in str(error):
             remedy = "give them with --per-turn N, all edges counted"
         raise BadInput(f"unit of {text!r}", of.where, f"{quantity.unit!r}: {error}", si, remedy) from error
     return factor, f", {quantity.unit} times {factor:.9g}" if factor != 1.0 else f", in {quantity.unit}"
+
+
+def _says_factor_one(node: Node) -> bool:
+    """Whether a factor of 1 was typed: where a stated unit is of another quantity it says that the number is right as it stands."""
+    return isinstance(node, Operation) and node.name == "*" and any(_is_one(factor) for factor in node.arguments)
+
+
+def _is_one(node: Node) -> bool:
+    return isinstance(node, Number) and node.value == 1.0
 
 
 def picked(reference: Reference, column_name: str, of: Source) -> tuple[str, Array]:
@@ -135,5 +146,9 @@ def _unknown(text: str, column_name: str, of: Source) -> BadInput:
     for name, told in of.contents.unread.items():
         if name == text or name.split(".")[-1] == text:
             return BadInput(f"signal {name!r}", of.where, told, "numbers", "export it as numbers")
+    alike = next((name for name in of.signals if text and text.lower() in name.lower()), None)
     remedy = f"name one of these: --column {column_name}=NAME, --column '{column_name}=NAME*pi/180'"
+    if alike:
+        quoted = shlex.quote(f"{column_name}='{alike}'")
+        remedy = f"if {alike} is meant: --column {quoted}"
     return BadInput(f"name {text!r}", of.where, there, f"a signal for the column {column_name}, or a number", remedy)

@@ -3,7 +3,7 @@
 import re
 
 # A sign that nothing precedes to which it could belong (a name, a number, a power of ten), before a number of zeros alone.
-_SIGNED_ZERO = re.compile(r"(?<![\w.)\]/-])[-+](?=0(?:\.0*)?(?![\w.]))")
+_SIGNED_ZERO = re.compile(r"(?<![\w.)\]/-])[-+](?=0(?:\.0*)?(?:[eE][-+]?\d+)?(?![\w.]))")
 
 
 def unsigned_zeros(text: str) -> str:

@@ -1,5 +1,7 @@
 """Each part of the log check by itself, on made-up columns of a CE150 whose truth is what was put in."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,6 +70,23 @@ def test_an_output_that_stands_while_its_axis_goes_on_is_told_with_its_times() -
     assert (found.finding.start_s, found.finding.end_s) == (pytest.approx(3.2, abs=0.02), pytest.approx(3.8, abs=0.02))
     assert amount(3.0 * STEP_RAD, "phi_rad", STEP_RAD) == "3 steps"
     assert (in_words(1, "row"), in_words(3, "row")) == ("1 row", "3 rows")
+
+
+@pytest.mark.parametrize(("slept_rows", "told"), [(0, []), (30, ["psi_rad"])])
+def test_a_rate_that_an_input_sets_going_rested_and_one_that_was_read_late_did_not(
+    slept_rows: int, told: list[str]
+) -> None:
+    """Truth: a speed that follows a step at 2 s within 10 and 150 ms, read in steps as a counted encoder's; 0.6 s unread are told."""
+    t_s = 0.02 * np.arange(300)
+    command = np.where(np.arange(300) < 100, 0.0, 9.0)
+    after_s = np.maximum(t_s - 2.0, 0.0)
+    speed = 7.5 * (1.0 - np.exp(-after_s / 0.01)) + 4.0 * (1.0 - np.exp(-after_s / 0.15))
+    read = 0.727 * np.round(speed / 0.727 + 0.4 * np.sin(40.0 * after_s))
+    read[100 : 100 + slept_rows] = 0.0
+    log = replace(log_of(300), t_s=t_s, sample_period_s=0.02, u=np.column_stack([command, command]))
+    log = replace(log, y=np.column_stack([read, np.zeros(300)]))
+    found = dead_findings(log, "a", {"psi_rad": 0.727}, np.zeros(300, bool))
+    assert [entry.finding.column for entry in found] == told
 
 
 def test_readings_that_are_repeated_until_the_next_one_are_left_out() -> None:

@@ -64,5 +64,16 @@ def test_samples_whose_time_does_not_rise_are_left_out_and_a_clock_that_mostly_s
     np.testing.assert_array_equal(done.log.t_s, np.delete(T_S, [7, 30]))
     assert "psi_rad: 2 samples whose time does not rise left out, first at 0.06 s" in done.found
     savemat(tmp_path / "run.mat", {**RUN, "t_s": np.floor(T_S * 20.0) / 20.0})
-    with pytest.raises(BadInput, match=r"expected times that increase; say --column t_s=0\.01\*row"):
+    with pytest.raises(
+        BadInput, match=r"expected times that increase; say --column t_s=0\.0[01]\d*\*row for rows so far apart"
+    ):
         imported_here(tmp_path / "run.mat", ColumnMapping())
+
+
+def test_rows_minutes_apart_by_the_dates_of_a_file_are_not_remarked(tmp_path: Path) -> None:
+    """Truth: five minutes between rows, by dates: no millisecond is meant."""
+    rows = "".join(f"2026-10-07 09:{minute:02d}:00;1;0;{minute / 100};0\n" for minute in range(0, 60, 5))
+    (tmp_path / "log.csv").write_text("When;u_M_V;u_T_V;psi_rad;phi_rad\n" + rows)
+    done = imported_here(tmp_path / "log.csv", ColumnMapping())
+    assert done.log.sample_period_s == 300.0
+    assert not any("apart" in told for told in done.found)

@@ -3,7 +3,7 @@
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TextIO
 
@@ -119,6 +119,12 @@ def table(rows: Sequence[Sequence[str]], heading: Sequence[str] = ()) -> str:
     if heading:
         shown.insert(1, "  ".join("-" * width for width in widths))
     return "\n".join(shown)
+
+
+def notes(sentences: Iterable[str]) -> None:
+    """Print sentences, a line each, zero without a sign as in tables and pages."""
+    for sentence in sentences:
+        print(f"- {unsigned_zeros(sentence)}")
 
 
 def fail(message: str) -> None:

@@ -106,8 +106,7 @@ def run(chosen: argparse.Namespace) -> int:
         print(f"\nConditions left out\n{tables}")
     if exact is not None:
         print(f"\n{_shown(modes_off(modes))}")
-    for note in notes_of(found):
-        print(f"- {note}")
+    console.notes(notes_of(found))
     print(f"\n{chosen.out / 'report.html'}")
     return 0
 

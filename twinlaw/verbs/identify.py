@@ -166,6 +166,5 @@ def _tell(
         print("\n" + console.table(aid_rows(result.aids), AID_HEADING))
     if result.holdout:
         print("\n" + console.table(held_out_rows(result.holdout), FIT_HEADING))
-    for note in result.notes:
-        print(f"- {note}")
+    console.notes(result.notes)
     print(f"\n{quality_sentence(quality)}\n{chosen.out / 'plant.toml'}")

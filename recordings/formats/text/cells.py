@@ -20,7 +20,7 @@ _NUMBER = {
 }
 _INFINITE = re.compile(r"[+-]?(inf|infinity|1\.#inf|∞)", re.IGNORECASE)
 _CLOCK = re.compile(
-    r"(?:[\w.,/ -]*[\w.][ T])?\s*(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,:]\d+)?))?\s*([AaPp][Mm])?"
+    r"(?:[\w.,/ -]*[\w.][ T_-])?\s*(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,:]\d+)?))?\s*([AaPp][Mm])?"
     r"(?:Z|[+-]\d{2}:?\d{2}| ?UTC| ?GMT| \d{4})?"
 )
 _BASIC = re.compile(r"\d{8}T(\d{2})(\d{2})(\d{2}(?:[.,]\d+)?)()(?:Z|[+-]\d{2}:?\d{2})?")  # ISO 8601 without signs

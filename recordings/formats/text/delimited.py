@@ -24,9 +24,11 @@ from recordings.formats.text.headings import name_and_unit
 from recordings.formats.text.layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, Line, find_layout, split
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal, counted
+from records.errors import BadInput
 
 Array = NDArray[np.float64]
 
+ACROSS = 10  # times as many columns as rows: signals that lie in rows
 MOST_TEXT = (
     0.5  # of a column's filled cells that are no numbers: beyond it the column is a text, not a signal with faults
 )
@@ -43,9 +45,21 @@ def read(path: Path, asked: TextLayout) -> Contents:
         asked = replace(asked, separator=said)
     layout = find_layout(lines, comments, asked, str(path))
     body, left_out = _body(*_without_headers(lines, layout), layout)
+    _check_upright(body, layout, str(path))
     told = (*found, *layout.found, *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
-    return Contents(with_clocks(signals), _sidecar(path), told, unread)
+    singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
+    return Contents(with_clocks(signals), _sidecar(path), told, unread, singles=singles)
+
+
+def _check_upright(body: Sequence[Line], layout: Layout, where: str) -> None:
+    """Refuses signals that lie in rows, a sample a column, as a program prints its arrays; raises BadInput."""
+    width = len(layout.headings)
+    if layout.headings == tuple(f"c{place}" for place in range(1, width + 1)) and ACROSS * len(body) <= width:
+        got = f"{counted(len(body), 'rows')} of {width} cells without a header, {layout.found[0]}"
+        raise BadInput(
+            "text file", where, got, "a row for each sample", "turn its rows into columns and export it again"
+        )
 
 
 def _sidecar(path: Path) -> dict[str, str]:

@@ -2,11 +2,12 @@
 
 import csv
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from statistics import median, mode
 
-from recordings.formats.text.cells import DECIMALS, is_missing, is_number
+from recordings.formats.text.cells import DECIMALS, is_missing, is_number, number
+from recordings.formats.text.labview import units_and_numbers
 from recordings.layout import TextLayout
 from recordings.units import known
 from records.errors import BadInput
@@ -28,7 +29,10 @@ class Line:
 
 @dataclass(frozen=True)
 class Layout:
-    """A table's layout: the separator by its name, the width of a row, headings and units by column, the first row's place in the lines."""
+    """A table's layout: the separator by its name, the width of a row, headings and units by column, the first row's place in the lines.
+
+    `singles` are numbers of one value that stand above the rows, by name.
+    """
 
     separator: str
     decimal: str
@@ -36,6 +40,17 @@ class Layout:
     units: tuple[str, ...]
     first: int
     found: tuple[str, ...]
+    singles: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Above:
+    """What the lines above the rows say: headings and units by column, what is to be told, numbers of one value by name."""
+
+    headings: tuple[str, ...]
+    units: tuple[str, ...]
+    told: tuple[str, ...]
+    singles: Mapping[str, float] = field(default_factory=dict)
 
 
 def split(text: str, separator: str) -> list[str]:
@@ -63,12 +78,15 @@ def find_layout(lines: Sequence[Line], comments: Sequence[Line], asked: TextLayo
     least = max(1.0, 0.5 * median(count for count in counts if count))
     numbers = [row for row, count in zip(rows, counts, strict=True) if count >= least]
     width = mode(len(_trimmed(row)) for row in numbers)
-    first = _first([count >= least and len(row) >= width for row, count in zip(rows, counts, strict=True)])
+    widest = mode(map(len, numbers))
+    fits = [len(row) >= width and not any(row[widest:]) for row in rows]
+    first = _first([count >= least and fit for count, fit in zip(counts, fits, strict=True)])
     before = [*(line for line in comments if line.number < sample[first].number), *sample[:first]]
     before = sorted(before, key=lambda line: line.number)
-    headings, units, told = _headings(before, separator, width, mode(map(len, numbers)), _are_counted(numbers))
+    above = _headings(before, (separator, decimal), width, widest, _are_counted(numbers))
     comma = " with decimal commas" if decimal == "," else ""
-    return Layout(separator, decimal, headings, units, first, (f"cells separated by {separator}{comma}", *told))
+    found = (f"cells separated by {separator}{comma}", *above.told)
+    return Layout(separator, decimal, above.headings, above.units, first, found, above.singles)
 
 
 def _first(are_numbers: Sequence[bool]) -> int:
@@ -113,35 +131,49 @@ def _trimmed(row: list[str]) -> list[str]:
     return row
 
 
-def _headings(
-    before: Sequence[Line], separator: str, width: int, widest: int, counted: bool
-) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
+def _headings(before: Sequence[Line], way: tuple[str, str], width: int, widest: int, counted: bool) -> _Above:
     """Headings and units by column out of the lines before the numbers, and what is to be said of them.
 
     Rows have `width` cells, or `widest` with empty ones behind them; `counted` rows begin with their number, which may have no heading.
     """
+    separator, decimal = way
     near = before[-HEADING_LINES:]
     candidates = [(line, _cells_of_heading(line.text, separator, width, widest, counted)) for line in near]
     wide = [(line, cells) for line, cells in candidates if cells is not None]
     if not wide:
         names = tuple(f"c{index}" for index in range(1, width + 1))
-        return (
-            names,
-            ("",) * width,
-            (f"no header: the columns are c1 to c{width}", *_passed_over(before, separator, width)),
-        )
+        unnamed = (f"no header: the columns are c1 to c{width}", *_passed_over(before, separator, width))
+        return _Above(names, ("",) * width, unnamed)
     line, cells = wide[-1]
-    units = [""] * width
+    units, singles = [""] * width, dict[str, float]()
     if len(wide) > 1 and _are_units(cells):
         units = [cell.strip("[](){}") for cell in cells]
+        below = line
         line, cells = wide[-2]
+        singles = _above_nothing(line, below, way, width)
     names = tuple(cell or f"c{index}" for index, cell in enumerate(cells, start=1))
     told = [f"header in line {line.number}: {shown(line.text)}"]
     if any(units):
         told.append(f"units in line {wide[-1][0].number}: {shown(wide[-1][0].text)}")
     if line.number > 1 and before[0].number < line.number:
         told.append(f"lines before {line.number} are passed over")
-    return names, tuple(units), tuple(told)
+    told += [
+        f"line {left.number} is passed over: {left.text[:60]!r}, {len(_trimmed(split(left.text, separator)))} cells of {width}"
+        for left in before
+        if left.number > wide[-1][0].number and not left.text.lstrip().startswith(COMMENTS)
+    ]
+    stated, numbers = units_and_numbers([split(one.text, separator) for one in before], names, decimal)
+    if stated:
+        told.append(f"units of LabVIEW's header: {', '.join(unit or '-' for unit in stated)}")
+    return _Above(names, stated or tuple(units), tuple(told), {**singles, **numbers})
+
+
+def _above_nothing(names: Line, units: Line, way: tuple[str, str], width: int) -> dict[str, float]:
+    """The numbers of the line of units that stand beyond the rows' cells, each under its name, as an oscilloscope has its first time."""
+    separator, decimal = way
+    pairs = zip(split(names.text, separator)[width:], split(units.text, separator)[width:], strict=False)
+    found = {name: number(cell, decimal) for name, cell in pairs if name and not is_missing(cell)}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def _passed_over(before: Sequence[Line], separator: str, width: int) -> tuple[str, ...]:
@@ -173,9 +205,20 @@ def _cells_of_heading(text: str, separator: str, width: int, widest: int, counte
         cells = [cell.rstrip(",;") if way == "blanks" else cell for cell in split(bare, way)]
         cells = cells[:width] if width < len(cells) <= widest or not any(cells[width:]) else cells
         cells = ["", *cells] if counted and len(cells) == width - 1 else cells
-        if len(cells) == width and any(cells):
+        if len(cells) == width and 2 * sum(map(bool, cells)) >= width:
             return cells
-    return None
+    return _wider_than_rows(bare, separator, width)
+
+
+def _wider_than_rows(text: str, separator: str, width: int) -> list[str] | None:
+    """The first cells of a heading that names more than the rows hold, a remark or a first time; None for another line."""
+    cells = _trimmed(split(text, separator))
+    named = len(cells) > width and separator != "blanks"
+    return cells[:width] if named and not any(_is_no_name(cell) for cell in cells[:width]) else None
+
+
+def _is_no_name(cell: str) -> bool:
+    return is_missing(cell) or any(is_number(cell, decimal) for decimal in DECIMALS)
 
 
 def _are_units(cells: Sequence[str]) -> bool:

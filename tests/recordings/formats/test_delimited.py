@@ -110,6 +110,7 @@ def test_times_of_day_are_seconds_since_the_first_past_midnight_too(tmp_path: Pa
         ["58:59.980", "58:59.990", "59:00.000", "59:00.010"],  # of a spreadsheet
         ["20240522T235959.980", "20240522T235959.990", "20240523T000000.000", "20240523T000000.010"],
         [f"Wed May 22 23:59:{rest} 2024" for rest in ("58.980", "58.990", "59.000", "59.010")],
+        [f"22/05/2024-23:59:{rest}" for rest in ("58.980", "58.990", "59.000", "59.010")],
         [f"22 May 2024 11:59:{rest} PM" for rest in ("58.980", "58.990", "59.000", "59.010")],
     ],
 )
@@ -151,6 +152,7 @@ def test_what_the_user_says_of_the_layout_is_taken(tmp_path: Path) -> None:
         (b"", "an empty file"),
         (b"t_s,u_V,q_m\n", "'t_s,u_V,q_m', and no row of numbers"),
         (b"hello\nworld\n", "'hello'"),
+        (b"1,2,3,4,5,6,7,8,9,10,11,12\n", "1 row of 12 cells without a header"),
         (b"PK\x03\x04" + bytes(90), "zipped file"),
         (bytes(range(256)) * 9, "no text"),
         (None, "No such file"),

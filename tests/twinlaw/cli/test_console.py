@@ -97,3 +97,8 @@ def test_only_one_place_knows_colours() -> None:
     escape = re.compile(r"\\x1b|\\033|\\e\[|\\u001b")
     found = [path for path in (ROOT / "twinlaw").rglob("*.py") if escape.search(path.read_text("utf-8"))]
     assert [path.name for path in found] == ["console.py"]
+
+
+def test_notes_are_lines_of_their_own_in_which_zero_has_no_sign(capsys: pytest.CaptureFixture[str]) -> None:
+    console.notes(["the direction +0.91 b -0.00 J", "moved by -0.0 sd"])
+    assert capsys.readouterr().out == "- the direction +0.91 b 0.00 J\n- moved by 0.0 sd\n"

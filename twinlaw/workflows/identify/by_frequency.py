@@ -204,6 +204,5 @@ def _tell(chosen: argparse.Namespace, done: Done) -> None:
     print("\n" + console.table(pair_rows(found, truth), pair_heading(truth)))
     if found.checks:
         print("\n" + console.table(check_rows(found.checks, found.fit.model.outputs), CHECK_HEADING))
-    for note in found.notes:
-        print(f"- {note}")
+    console.notes(found.notes)
     print(f"\n{quality_sentence(frequency_quality(found, truth))}\n{chosen.out / 'plant.toml'}")
