@@ -71,10 +71,17 @@ class RoundingBound:
     @property
     def told(self) -> str:
         """The bounds in words."""
-        return ", ".join(f"{name} within {self._size(name, bound)}" for name, bound in self.volts.items())
+        return ", ".join(f"{name} within {self.size(name)}" for name in self.volts)
 
-    def _size(self, name: str, bound: float) -> str:
-        return f"{bound:.2g} {self.units[name]}" if name in self.units else f"{1e3 * bound:.2f} mV"
+    def column(self, name: str) -> str:
+        """An output's column: u_M_V, u_A; one that states no unit is the name alone."""
+        unit = self.units.get(name, "V")
+        return name if unit == "1" else f"{name}_{unit.replace(' ', '').replace('/', '_').replace('^', '')}"
+
+    def size(self, name: str) -> str:
+        """The bound of one output in words."""
+        bound = self.volts[name]
+        return f"{bound:.2g} {self.units[name]}".removesuffix(" 1") if name in self.units else f"{1e3 * bound:.2f} mV"
 
     @property
     def entries(self) -> dict[str, Any]:

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
+from codegen.law_frame import without_vanishing_powers
+from records.table import ControllerTable
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -25,7 +28,8 @@ class Finding:
 class Deviation:
     """A rule (* for any), the files (shell pattern) and lines (regular expression) where it may be broken, and why.
 
-    `arithmetic` limits it to the law in one arithmetic; one that `depends_on_table` may find nothing to cover.
+    `arithmetic` limits it to the law in one arithmetic, `where` to tables that this is said of (`said_of`); one that
+    `depends_on_table` may find nothing to cover.
     """
 
     rule: str
@@ -33,6 +37,7 @@ class Deviation:
     reason: str
     line: str = ""
     arithmetic: str | None = None
+    where: str | None = None
     depends_on_table: bool = False
 
     def covers(self, finding: Finding) -> bool:
@@ -59,11 +64,18 @@ class Judgement:
         return (*(str(finding) for finding in self.unjustified), *idle)
 
 
-def load_deviations(path: Path, arithmetic: str) -> tuple[Deviation, ...]:
-    """The deviations of a file that concern the law in `arithmetic`."""
+def said_of(table: ControllerTable) -> frozenset[str]:
+    """What a deviation may ask of a table."""
+    has_feedforward = any(without_vanishing_powers(axis.feedforward_V) for axis in table.axes)
+    asked = {"no schedule": table.schedule is None, "no feed-forward": not has_feedforward}
+    return frozenset(words for words, holds in asked.items() if holds)
+
+
+def load_deviations(path: Path, arithmetic: str, said: frozenset[str] = frozenset()) -> tuple[Deviation, ...]:
+    """The deviations of a file that concern the law in `arithmetic`, of a table that this is `said` of."""
     entries = tomllib.loads(path.read_text(encoding="utf-8"))["deviation"]
     deviations = (Deviation(**entry) for entry in entries)
-    return tuple(deviation for deviation in deviations if deviation.arithmetic in (None, arithmetic))
+    return tuple(d for d in deviations if d.arithmetic in (None, arithmetic) and (d.where is None or d.where in said))
 
 
 def judge(findings: Sequence[Finding], deviations: Sequence[Deviation]) -> Judgement:

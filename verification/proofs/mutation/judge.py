@@ -12,7 +12,7 @@ from records.table import ControllerTable
 from verification.equality import BatchStepper, differing
 from verification.fixed_stimuli import EDGES, SPECIAL_WORDS, fixed_stimuli
 from verification.host_law import HostLaw
-from verification.stimuli import ARRIVALS, SPECIAL_BITS, Stimulus, standard_stimuli
+from verification.stimuli import ARRIVALS, SPECIAL_BITS, Stimulus, at_the_bound, standard_stimuli
 
 Bits = NDArray[Any]
 
@@ -40,8 +40,8 @@ class Behaviour:
 
 
 def stimuli_of(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[Stimulus]:
-    """The stimuli of the equality checks, `steps` steps of them, those from edges also lane by lane, one arrival alone, and one with
-    every word missing, in one lane and in two.
+    """The stimuli of the equality checks, `steps` steps of them, those from edges also lane by lane, one arrival alone, one with
+    every word missing, in one lane and in two, and in float32 the bound of what is plausible.
 
     A lane alone runs on single numbers, for which the twin has decisions of their own.
     """
@@ -49,7 +49,8 @@ def stimuli_of(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[
     alone = [lane for stimulus in stimuli if stimulus.name == EDGES for lane in _lane_by_lane(stimulus)]
     alone += [next(_lane_by_lane(stimulus)) for stimulus in stimuli if stimulus.name == ARRIVALS]
     word = int(_SPECIAL[arithmetic][0])
-    return (*stimuli, *alone, *(_all_missing(table, word, lanes) for lanes in (1, 2)))
+    bound = [at_the_bound(table)] if arithmetic == "float32" else []
+    return (*stimuli, *alone, *bound, *(_all_missing(table, word, lanes) for lanes in (1, 2)))
 
 
 def _lane_by_lane(stimulus: Stimulus) -> Iterator[Stimulus]:

@@ -16,7 +16,7 @@ import numpy as np
 from records.verification import ProofResult
 from verification.equality import BatchStepper
 from verification.host_law import HostLaw
-from verification.proofs.deviations import Finding, judge, load_deviations
+from verification.proofs.deviations import Finding, judge, load_deviations, said_of
 from verification.proofs.mutation.judge import stepped, stimuli_of
 from verification.proofs.mutation.law import judged_c
 from verification.proofs.mutation.mutants_python import mutated_twin, python_mutants
@@ -121,7 +121,7 @@ def _sampled(mutants: Sequence[T], subject: Subject) -> Sequence[T]:
 
 def _score(group: str, judged: Sequence[tuple[str, bool]], subject: Subject) -> Score:
     """The score of a group, equivalent survivors left out."""
-    known = load_deviations(EQUIVALENTS, subject.arithmetic)
+    known = load_deviations(EQUIVALENTS, subject.arithmetic, said_of(subject.table))
     silent = [Finding(re.split(r"[:.]", title)[0], 0, group, title) for title, noticed in judged if not noticed]
     survivors = tuple(finding.text for finding in judge(silent, known).unjustified)
     return Score(group, len(judged) - len(silent), survivors, len(silent) - len(survivors))
