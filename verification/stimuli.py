@@ -26,6 +26,7 @@ SPECIAL_BITS = np.array(
 
 
 BEYOND = 1.2  # times the largest reference: as far as stimuli go where that is far
+JUMPS = "reference jumps"
 ARRIVALS = "arrivals"  # the stimulus of filters that are all but there
 
 
@@ -85,7 +86,7 @@ def reference_jumps(table: FlownTable, rng: np.random.Generator, steps: int, lan
     angles = np.stack([_wander(axis, rng, steps, lanes) for axis in table.axes], axis=-1)
     references = np.stack([_jumps(axis, rng, steps, lanes) for axis in table.axes], axis=-1)
     inputs = np.concatenate([references, angles], axis=-1).astype(np.float32)
-    return _from_rest("reference jumps", _bits(inputs))
+    return _from_rest(JUMPS, _bits(inputs))
 
 
 def saturating(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:

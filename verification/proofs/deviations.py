@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
+from codegen.fixed.constants import fixed_constants, word_number
 from codegen.law_frame import without_vanishing_powers
 from records.table import ControllerTable
 
@@ -64,11 +65,28 @@ class Judgement:
         return (*(str(finding) for finding in self.unjustified), *idle)
 
 
-def said_of(table: ControllerTable) -> frozenset[str]:
-    """What a deviation may ask of a table."""
-    has_feedforward = any(without_vanishing_powers(axis.feedforward_V) for axis in table.axes)
-    asked = {"no schedule": table.schedule is None, "no feed-forward": not has_feedforward}
+def said_of(table: ControllerTable, arithmetic: str) -> frozenset[str]:
+    """What a deviation may ask of a table and of the law made of it."""
+    feedforwards = [without_vanishing_powers(axis.feedforward_V) for axis in table.axes]
+    asked = {
+        "no schedule": table.schedule is None,
+        "no feed-forward": not any(feedforwards),
+        "one state": table.order == 1,
+        "a difference that no term reads": any(not without_vanishing_powers(axis.p[-1]) for axis in table.axes)
+        or any(len(axis.p) <= table.order for axis in table.axes),
+        **(_said_of_products(table) if arithmetic == "fixed" else {}),
+    }
     return frozenset(words for words, holds in asked.items() if holds)
+
+
+def _said_of_products(table: ControllerTable) -> dict[str, bool]:
+    terms = [term for axis in fixed_constants(table, word_number).axes for term in axis.terms]
+    short = [term.polynomial for term in terms if term.is_short]
+    return {
+        "no narrow product": not any(term.is_narrow for term in terms),
+        "no long product": all(term.is_short or term.is_narrow for term in terms),
+        "no negative short coefficient": all(form.constant >= 0 and not form.powers for form in short),
+    }
 
 
 def load_deviations(path: Path, arithmetic: str, said: frozenset[str] = frozenset()) -> tuple[Deviation, ...]:

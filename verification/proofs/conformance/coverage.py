@@ -75,7 +75,7 @@ def measured(subject: Subject) -> tuple[Report, Mapping[str, list[str]]]:
 
 
 def with_pins(protocol_h: str) -> str:
-    """The protocol of a board with a sensor and an output for every loop: without them the flying part of the control path has no way in."""
+    """The protocol of a board with a sensor and an output for every loop: without them nothing leads into flying."""
     return protocol_h.replace("#define PROTOCOL_HAS_PINS 0", "#define PROTOCOL_HAS_PINS 1")
 
 
