@@ -111,6 +111,11 @@ class DesignReport:
         """The column that the coefficients go by; the first loop's where they go by none."""
         return next((loop.output for loop in self.loops if loop.axis == self.angle), self.loops[0].output)
 
+    @property
+    def is_scheduled(self) -> bool:
+        """Whether the coefficients go by a measured output; else there is one rest point, and nothing between."""
+        return any(loop.axis == self.angle for loop in self.loops)
+
     def loop(self, axis: str) -> Loop:
         """The loop of this axis."""
         return next(loop for loop in self.loops if loop.axis == axis)

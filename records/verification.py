@@ -91,13 +91,17 @@ class RoundingBound:
 
 @dataclass(frozen=True)
 class PoleMigration:
-    """The slowest closed-loop pole of one axis as designed, and the worst one between grid points after fit and rounding."""
+    """The slowest closed-loop pole of one axis as designed, and the worst one between grid points after fit and rounding.
+
+    `at` says in words where on the schedule the worst one is; empty of a law without one.
+    """
 
     axis: str
     designed_slowest_rad_s: float
     worst_slowest_rad_s: float
     at_psi_rad: float
     stable: bool
+    at: str = ""
 
 
 @dataclass(frozen=True)
@@ -168,7 +172,9 @@ class Verification:
             if row.mismatches
         )
         unstable = (
-            f"the {row.axis} loop is unstable at {row.at_psi_rad:.3f} rad" for row in self.poles if not row.stable
+            f"the {row.axis} loop is unstable{f' at {row.at}' if row.at else ''}"
+            for row in self.poles
+            if not row.stable
         )
         slow = (
             f"{row.cycles_max} cycles were measured above the bound of {row.cycles_bound} ({row.arithmetic})"
@@ -201,7 +207,7 @@ def verification_text(verification: Verification) -> str:
         "self_test": content["self_tests"],
         "rounding_bound_V": verification.rounding.entries,
         "rounding_bounds_V": {name: bound.entries for name, bound in verification.roundings.items()},
-        "poles": content["poles"],
+        "poles": [{key: value for key, value in row.items() if key != "at"} for row in content["poles"]],
         "target": content["target"],
         **({"proofs": content["proofs"]} if verification.proofs else {}),
     }

@@ -66,6 +66,7 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 STEP_SHARES = (0.0, 0.5, -0.3, 0.0)
 TIME_CONSTANTS = 8.0
 SHORTEST_HOLD_S, LONGEST_HOLD_S = 4.0, 15.0
+LONGEST_HOLD_SAMPLES = 3000  # of a slow plant, whose samples are few a second
 
 
 def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
@@ -95,7 +96,8 @@ def _hold_s(table: Table[Any], axis: Any, name: str) -> float:
     poles = table.origin.get(name, {}).get("poles_rad_s", [[-1.0, 0.0]])
     slowest_s = 1.0 / max(min(abs(real) for real, _ in poles), 1e-3)
     wanted_s = float(TIME_CONSTANTS * (slowest_s + 2.0 * axis.prefilter_time_constant_s))
-    return min(max(wanted_s, SHORTEST_HOLD_S), LONGEST_HOLD_S)
+    longest_s = max(LONGEST_HOLD_S, LONGEST_HOLD_SAMPLES * table.sample_period_s)
+    return min(max(wanted_s, SHORTEST_HOLD_S), longest_s)
 
 
 def positions(bound: BoundPlant, places: Sequence[int], angles_rad: Sequence[float]) -> list[float]:

@@ -106,6 +106,11 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
         "torque": ("LAW_TAU_MAX_NM", "u_max_Nm"),
         "tank": ("LAW_LEVEL_REF_MAX_M", "reference_max_m"),
     }[name]
+    page = (tmp_path / "b" / "report.html").read_text()
+    foreign = [words for words in ("Psi", "elevation", "at 0.0 deg", "over the rest", "the other axis'") if words in page]
+    assert foreign == []
+    tracked = json.loads((tmp_path / "b" / "run.json").read_text()) if (tmp_path / "b" / "run.json").exists() else said
+    assert all(row["settling_s"] is not None for row in tracked["tracking"].values())
     assert macro in header
     assert key in str(table)
 

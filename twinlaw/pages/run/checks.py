@@ -5,7 +5,6 @@ from records.validation import Validation
 from records.verification import Verification
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Row
-from twinlaw.pages.run.design import degrees
 
 _OUTCOMES = {"proved": "proved", "failed": "FAILS", "skipped": "skipped"}
 
@@ -46,7 +45,7 @@ def verification_rows(verification: Verification) -> list[Row]:
     rows += [
         (
             f"{row.axis} poles after fit and rounding",
-            f"{row.designed_slowest_rad_s:.2f} -> {row.worst_slowest_rad_s:.2f} rad/s at {degrees(row.at_psi_rad)}",
+            f"{row.designed_slowest_rad_s:.2f} -> {row.worst_slowest_rad_s:.2f} rad/s{f' at {row.at}' if row.at else ''}",
             _held(row.stable),
         )
         for row in verification.poles
