@@ -91,7 +91,8 @@ def written(name: str, folder: Path) -> Path:
 
 @pytest.mark.parametrize("name", sampled(["emps", "coil", "torque", "tank"], keep=["emps", "coil"]))
 def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Truth: 100 000 steps in both arithmetics, no bit differs; the image has flown, and the flight stayed with its references."""
+    """Truth: 100 000 steps in both arithmetics, no bit differs; the image has flown, and the flight stayed with its references,
+    every step settled. Of a law without schedule, in other units, no page speaks of angles and of the helicopter."""
     assert main(["run", "--plant", str(written(name, tmp_path)), "--out", str(tmp_path / "b"), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
     found = json.loads((tmp_path / "b" / "verification.json").read_text())
@@ -107,10 +108,13 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
         "tank": ("LAW_LEVEL_REF_MAX_M", "reference_max_m"),
     }[name]
     page = (tmp_path / "b" / "report.html").read_text()
-    foreign = [words for words in ("Psi", "elevation", "at 0.0 deg", "over the rest", "the other axis'") if words in page]
+    foreign = [
+        words
+        for words in ("Psi", "elevation", "at 0.0 deg", "over the rest", "other axis'", "voltages come")
+        if words in page
+    ]
     assert foreign == []
-    tracked = json.loads((tmp_path / "b" / "run.json").read_text()) if (tmp_path / "b" / "run.json").exists() else said
-    assert all(row["settling_s"] is not None for row in tracked["tracking"].values())
+    assert "never" not in page
     assert macro in header
     assert key in str(table)
 
