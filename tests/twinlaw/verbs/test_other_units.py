@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.own_plants import NO_AXIS, OwnPlant
+from tests.own_plants import HEATER, NO_AXIS, TANKS, OwnPlant
 from tests.soak import sampled
 from twinlaw.command import main
 
@@ -74,22 +74,53 @@ prefilter_time_constant_s = 2.0
 reference_min_m = 0.2
 reference_max_m = 1.0
 """
+HEATED = """
+[design]
+sample_period_s = 0.05
+
+[design.body]
+poles_rad_s = [-0.5, -0.8]
+prefilter_time_constant_s = 1.0
+reference_min_K = 10.0
+reference_max_K = 50.0
+"""
+LEVELS = """
+[design]
+sample_period_s = 0.05
+
+[design.level]
+poles_rad_s = [-0.1, -0.12, -0.15, -0.2]
+prefilter_time_constant_s = 5.0
+reference_min_m = 0.2
+reference_max_m = 0.6
+"""
+BY_PLACE = EMPS.replace(
+    "[design]\n",
+    '[design]\nschedule = "q_m"\nq_min_m = -0.1\nq_max_m = 0.1\noperating_points = 9\ncoefficient_degree = 2\n',
+)
 
 
 def written(name: str, folder: Path) -> Path:
     """The plant's file with its wishes."""
-    if name in ("coil", "tank"):
-        path = (NO_AXIS if name == "coil" else TANK_PLANT).write(folder, name)
-        text = path.read_text().replace("resolution_A = 0.001", "resolution_A = 0.0025")
-        path.write_text(text + (COIL if name == "coil" else TANK))
+    own = {"coil": (NO_AXIS, COIL), "tank": (TANK_PLANT, TANK), "heater": (HEATER, HEATED), "tanks": (TANKS, LEVELS)}
+    if name in own:
+        plant, wishes = own[name]
+        path = plant.write(folder, name)
+        path.write_text(path.read_text().replace("resolution_A = 0.001", "resolution_A = 0.0025") + wishes)
         return path
-    model, wishes = {"emps": ("emps", EMPS), "torque": ("torque_limited_pendulum", TORQUE)}[name]
+    model, wishes = {
+        "emps": ("emps", EMPS),
+        "by_place": ("emps", BY_PLACE),
+        "torque": ("torque_limited_pendulum", TORQUE),
+    }[name]
     path = folder / f"{name}.toml"
     path.write_text((PLANTS / f"{model}.toml").read_text() + wishes)
     return path
 
 
-@pytest.mark.parametrize("name", sampled(["emps", "coil", "torque", "tank"], keep=["emps", "coil"]))
+@pytest.mark.parametrize(
+    "name", sampled(["emps", "by_place", "coil", "torque", "tank", "heater", "tanks"], keep=["by_place", "coil"])
+)
 def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Truth: 100 000 steps in both arithmetics, no bit differs; the image has flown, and the flight stayed with its references,
     every step settled. Of a law without schedule, in other units, no page speaks of angles and of the helicopter."""
@@ -103,6 +134,9 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
     table = json.loads((tmp_path / "b" / "controller.json").read_text())
     macro, key = {
         "emps": ("LAW_Q_REF_MAX_M", "reference_max_m"),
+        "by_place": ("LAW_Q_MAX_M", "reference_max_m"),
+        "heater": ("LAW_HEAT_MAX_W", "u_max_W"),
+        "tanks": ("LAW_H2_REF_MAX_M", "reference_max_m"),
         "coil": ("LAW_I_REF_MAX_A", "reference_max_A"),
         "torque": ("LAW_TAU_MAX_NM", "u_max_Nm"),
         "tank": ("LAW_LEVEL_REF_MAX_M", "reference_max_m"),
