@@ -233,6 +233,7 @@ def _axis_report(survey: _Survey, points: DesignPoints, axis: str) -> AxisReport
     scheduled = ScheduledAxis(
         name=axis,
         wishes=survey.settings.axis(axis),
+        place=survey.settings.place,
         grid_rad=points.psi_rad,
         designs=tuple(design.delta for design in designs),
         degree=survey.settings.coefficient_degree,
