@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.own_plants import HEATER, NO_AXIS, TANKS, OwnPlant
+from tests.own_plants import HEATER, NO_AXIS, RATE_ONLY, TANKS, OwnPlant
 from tests.soak import sampled
 from twinlaw.command import main
 
@@ -94,6 +94,28 @@ prefilter_time_constant_s = 5.0
 reference_min_m = 0.2
 reference_max_m = 0.6
 """
+BY_LEVEL = """
+[design]
+sample_period_s = 0.05
+schedule = "h2_m"
+h2_min_m = 0.2
+h2_max_m = 0.6
+operating_points = 7
+coefficient_degree = 2
+
+[design.level]
+poles_rad_s = [-0.1, -0.12, -0.15, -0.2]
+prefilter_time_constant_s = 5.0
+"""
+BY_RATE = """
+[design]
+schedule = "omega_rad_s"
+omega_min_rad_s = -3.0
+omega_max_rad_s = 3.0
+
+[design.arm]
+poles_rad_s = [-3.0, -4.0, -5.0, -6.0]
+"""
 BY_PLACE = EMPS.replace(
     "[design]\n",
     '[design]\nschedule = "q_m"\nq_min_m = -0.1\nq_max_m = 0.1\noperating_points = 9\ncoefficient_degree = 2\n',
@@ -103,6 +125,7 @@ BY_PLACE = EMPS.replace(
 def written(name: str, folder: Path) -> Path:
     """The plant's file with its wishes."""
     own = {"coil": (NO_AXIS, COIL), "tank": (TANK_PLANT, TANK), "heater": (HEATER, HEATED), "tanks": (TANKS, LEVELS)}
+    own["by_level"] = (TANKS, BY_LEVEL)
     if name in own:
         plant, wishes = own[name]
         path = plant.write(folder, name)
@@ -119,7 +142,11 @@ def written(name: str, folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    "name", sampled(["emps", "by_place", "coil", "torque", "tank", "heater", "tanks"], keep=["by_place", "coil"])
+    "name",
+    sampled(
+        ["emps", "by_place", "coil", "torque", "tank", "heater", "tanks", "by_level"],
+        keep=["by_place", "coil", "by_level"],
+    ),
 )
 def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Truth: 100 000 steps in both arithmetics, no bit differs; the image has flown, and the flight stayed with its references,
@@ -136,6 +163,7 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
         "emps": ("LAW_Q_REF_MAX_M", "reference_max_m"),
         "by_place": ("LAW_Q_MAX_M", "reference_max_m"),
         "heater": ("LAW_HEAT_MAX_W", "u_max_W"),
+        "by_level": ("LAW_H2_MAX_M", "reference_max_m"),
         "tanks": ("LAW_H2_REF_MAX_M", "reference_max_m"),
         "coil": ("LAW_I_REF_MAX_A", "reference_max_A"),
         "torque": ("LAW_TAU_MAX_NM", "u_max_Nm"),
@@ -153,11 +181,9 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
     assert key in str(table)
 
 
-def test_a_schedule_by_what_is_no_position_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    plant = written("coil", tmp_path)
-    plant.write_text(
-        plant.read_text().replace("[design]\n", '[design]\nschedule = "i_A"\ni_min_A = -3.0\ni_max_A = 3.0\n')
-    )
+def test_a_plant_with_positions_is_scheduled_by_these_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant = RATE_ONLY.write(tmp_path, "arm")
+    plant.write_text(plant.read_text() + BY_RATE)
     assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 2
     assert "the position of an axis" in capsys.readouterr().err
 
