@@ -12,7 +12,9 @@ from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.prior import COMMON
 
-NEVER = 30.0  # beyond every declared limit of the plants, or so much more than a larger usual command: the effect is absent
+NEVER = (
+    30.0  # beyond every declared limit of the plants, or so much more than a larger usual command: the effect is absent
+)
 BEYOND = 1.25
 
 # Of a corner, as a share of where it lies.
