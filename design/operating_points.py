@@ -17,7 +17,8 @@ from design.transfer import TransferFunction, transfer_function
 from records.errors import BadInput
 from records.loops import Loop
 from sim.bind import BoundPlant
-from sim.equilibrium import OperatingPoint, equilibrium
+from sim.equilibrium import OperatingPoint, equilibrium, rest_with
+from sim.wiring import wiring
 
 Array = NDArray[np.float64]
 
@@ -40,11 +41,24 @@ def grid(settings: DesignSettings) -> Array:
 
 
 def rest(bound: BoundPlant, settings: DesignSettings, psi_rad: float) -> OperatingPoint:
-    """Eq (16) with the scheduling axis at this angle and all others at 0; raises BadInput naming angle and input beyond its limits."""
-    if settings.schedule is None:
-        return equilibrium(bound)
+    """Eq (16) with the scheduling axis at this angle and all others at 0, or, of a plant that has no position at all, with what its loops
+    measure in the middle of their references, the scheduling one at this value.
+
+    Raises BadInput naming value and input beyond its limits.
+    """
     arms = [axis for axis in bound.model.axes if axis.position is not None]
-    scheduling = measured_axis(bound.model, settings.loop(settings.schedule.axis))
+    schedule = settings.schedule
+    if not arms:
+        middles = [
+            psi_rad
+            if schedule is not None and axis.axis == schedule.axis
+            else 0.5 * (axis.reference_min_rad + axis.reference_max_rad)
+            for axis in settings.axes
+        ]
+        return rest_with(bound, wiring(bound, settings.loops).outputs, middles)
+    if schedule is None:
+        return equilibrium(bound)
+    scheduling = measured_axis(bound.model, settings.loop(schedule.axis))
     return equilibrium(bound, *(psi_rad if axis is scheduling else 0.0 for axis in arms))
 
 

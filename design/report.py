@@ -111,6 +111,11 @@ class DesignReport:
         """The column that the coefficients go by; the first loop's where they go by none."""
         return next((loop.output for loop in self.loops if loop.axis == self.angle), self.loops[0].output)
 
+    @property
+    def is_scheduled(self) -> bool:
+        """Whether the coefficients go by a measured output; else there is one rest point, and nothing between."""
+        return any(loop.axis == self.angle for loop in self.loops)
+
     def loop(self, axis: str) -> Loop:
         """The loop of this axis."""
         return next(loop for loop in self.loops if loop.axis == axis)
@@ -228,6 +233,7 @@ def _axis_report(survey: _Survey, points: DesignPoints, axis: str) -> AxisReport
     scheduled = ScheduledAxis(
         name=axis,
         wishes=survey.settings.axis(axis),
+        place=survey.settings.place,
         grid_rad=points.psi_rad,
         designs=tuple(design.delta for design in designs),
         degree=survey.settings.coefficient_degree,

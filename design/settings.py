@@ -239,8 +239,9 @@ def _scheduling(section: Mapping[str, Any], loops: tuple[Loop, ...], where: str)
 
 
 def _schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, where: str) -> Schedule:
-    if measured_axis(bound.nominal, loop) is None:
-        expected = "an output that is the position of an axis: only there can the plant be put to rest at a value of it"
+    has_positions = any(axis.position is not None for axis in bound.nominal.axes)
+    if has_positions and measured_axis(bound.nominal, loop) is None:
+        expected = "an output that is the position of an axis, as this plant has positions: it is put to rest at these"
         raise BadInput("schedule", f"{where}.schedule", loop.output, expected, "leave it out for no schedule")
     low_key, high_key = _range_keys(loop)
     stops_rad = stops(bound, loop)

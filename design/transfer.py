@@ -16,12 +16,9 @@ from records.errors import VerificationFailed
 
 Array = NDArray[np.float64]
 
-# Largest difference between the first impulse response samples of the usual conversion, in z, and of the matrix exponential: a share of
-# the largest of them, and what is lost in z at any sample period [rad/V], where B is the difference of two polynomials with coefficients
-# of about 1. The helicopter loses 2e-14 rad/V from 0.5 to 50 ms; the largest is 7e-8 to 3e-2 there.
+# Largest difference between the first impulse response samples of the usual conversion, in z, and of the matrix exponential, as a share
+# of the largest of them.
 MAX_DISAGREEMENT = 1e-7
-LOST_IN_Z = 1e-13
-LEAST_KNOWN = 1e-3  # of the largest sample; where more than this share is lost in z, nothing is left to compare
 
 
 @dataclass(frozen=True)
@@ -33,18 +30,22 @@ class TransferFunction:
 
 
 def transfer_function(linear: LinearPlant, sample_period_s: float, where: str) -> TransferFunction:
-    """The paper's c2d and ss2tf, eqs (20) and (21) of seed 000, for one input and one output in rad/V, by way of gamma.
+    """The paper's c2d and ss2tf, eqs (20) and (21) of seed 000, for one input and one output, by way of gamma.
 
     Raises VerificationFailed naming `where` when the usual conversion of the same plant is another one.
     """
     sampled = sample(linear, sample_period_s)
     polynomials = plant_polynomials(sampled)
-    _check(_in_z(linear, sample_period_s), sampled, where)
+    _check(linear, sampled, where)
     return transfer_from_polynomials(polynomials.b, polynomials.a)
 
 
-def _in_z(linear: LinearPlant, sample_period_s: float) -> TransferFunction:
-    """The same by the way that python-control takes: Pade's exponential, and B as det(zI - A + BC) - det(zI - A)."""
+def _in_z(linear: LinearPlant, sample_period_s: float, scale: float) -> TransferFunction:
+    """The same by the way that python-control takes: Pade's exponential, and B as det(zI - A + BC) - det(zI - A).
+
+    That is the difference of two polynomials with coefficients of about 1: it keeps digits where the output is counted in a `scale`
+    in which B is of about 1 as well.
+    """
     from scipy.linalg import expm  # which whoever only reads a table is spared
 
     states = len(linear.A)
@@ -52,8 +53,8 @@ def _in_z(linear: LinearPlant, sample_period_s: float) -> TransferFunction:
     block[:states, :states], block[:states, states:] = linear.A, linear.B
     step = expm(block * sample_period_s)
     A, B = step[:states, :states], step[:states, states:]
-    a, with_output = (np.asarray(np.poly(matrix), dtype=float) for matrix in (A, A - B @ linear.C))
-    return TransferFunction(b=with_output - a, a=a)
+    a, with_output = (np.asarray(np.poly(matrix), dtype=float) for matrix in (A, A - B @ linear.C / scale))
+    return TransferFunction(b=(with_output - a) * scale, a=a)
 
 
 def transfer_from_polynomials(b_gamma: Array, a_gamma: Array) -> TransferFunction:
@@ -69,15 +70,19 @@ def transfer_from_polynomials(b_gamma: Array, a_gamma: Array) -> TransferFunctio
     return TransferFunction(b=in_z(b_gamma), a=in_z(a_gamma))
 
 
-def _check(found: TransferFunction, sampled: SampledPlant, where: str) -> None:
-    count = 2 * len(found.a)
+def _check(linear: LinearPlant, sampled: SampledPlant, where: str) -> None:
+    count = 2 * (len(linear.A) + 1)
     wanted = _markov(sampled, count)
-    difference, largest = float(np.max(np.abs(_impulse_response(found, count) - wanted))), float(np.max(np.abs(wanted)))
-    limit = MAX_DISAGREEMENT * largest + LOST_IN_Z
-    if not (difference < limit and LEAST_KNOWN * largest > LOST_IN_Z):
+    largest = float(np.max(np.abs(wanted)))
+    at = f"{where}: sampled at {1e3 * sampled.sample_period_s:g} ms"
+    if not 0.0 < largest < np.inf:
+        raise VerificationFailed(f"{at}, {count} samples of the impulse response reach {largest:.1e} in SI units")
+    found = _in_z(linear, sampled.sample_period_s, largest)
+    share = float(np.max(np.abs(_impulse_response(found, count) - wanted))) / largest
+    if not share < MAX_DISAGREEMENT:
         raise VerificationFailed(
-            f"{where}: sampled at {1e3 * sampled.sample_period_s:g} ms, the transfer function differs from the matrix exponential by "
-            f"{difference:.1e} rad/V in its impulse response of up to {largest:.1e} rad/V (limit {limit:.1e} rad/V)"
+            f"{at}, the transfer function differs from the matrix exponential by {share:.1e} of the largest sample of its impulse "
+            f"response (limit {MAX_DISAGREEMENT:.1e})"
         )
 
 

@@ -72,10 +72,17 @@ class RoundingBound:
     @property
     def told(self) -> str:
         """The bounds in words."""
-        return ", ".join(f"{name} within {self._size(name, bound)}" for name, bound in self.volts.items())
+        return ", ".join(f"{name} within {self.size(name)}" for name in self.volts)
 
-    def _size(self, name: str, bound: float) -> str:
-        return f"{bound:.2g} {self.units[name]}" if name in self.units else f"{1e3 * bound:.2f} mV"
+    def column(self, name: str) -> str:
+        """An output's column: u_M_V, u_A; one that states no unit is the name alone."""
+        unit = self.units.get(name, "V")
+        return name if unit == "1" else f"{name}_{unit.replace(' ', '').replace('/', '_').replace('^', '')}"
+
+    def size(self, name: str) -> str:
+        """The bound of one output in words."""
+        bound = self.volts[name]
+        return f"{bound:.2g} {self.units[name]}".removesuffix(" 1") if name in self.units else f"{1e3 * bound:.2f} mV"
 
     @property
     def entries(self) -> dict[str, Any]:
@@ -85,13 +92,17 @@ class RoundingBound:
 
 @dataclass(frozen=True)
 class PoleMigration:
-    """The slowest closed-loop pole of one axis as designed, and the worst one between grid points after fit and rounding."""
+    """The slowest closed-loop pole of one axis as designed, and the worst one between grid points after fit and rounding.
+
+    `at` says in words where on the schedule the worst one is; empty of a law without one.
+    """
 
     axis: str
     designed_slowest_rad_s: float
     worst_slowest_rad_s: float
     at_psi_rad: float
     stable: bool
+    at: str = ""
 
 
 @dataclass(frozen=True)
@@ -162,7 +173,9 @@ class Verification:
             if row.mismatches
         )
         unstable = (
-            f"the {row.axis} loop is unstable at {row.at_psi_rad:.3f} rad" for row in self.poles if not row.stable
+            f"the {row.axis} loop is unstable{f' at {row.at}' if row.at else ''}"
+            for row in self.poles
+            if not row.stable
         )
         slow = (
             f"{row.cycles_max} cycles were measured above the bound of {row.cycles_bound} ({row.arithmetic})"
@@ -195,7 +208,7 @@ def verification_text(verification: Verification) -> str:
         "self_test": content["self_tests"],
         "rounding_bound_V": verification.rounding.entries,
         "rounding_bounds_V": {name: bound.entries for name, bound in verification.roundings.items()},
-        "poles": content["poles"],
+        "poles": [{key: value for key, value in row.items() if key != "at"} for row in content["poles"]],
         "target": content["target"],
         **({"proofs": content["proofs"]} if verification.proofs else {}),
     }

@@ -1,12 +1,13 @@
 """The rest points of a plant: constant inputs and states that hold its axes at given positions."""
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
-from records.text.units import unit_of, unit_suffix
+from records.text.units import said, unit_of, unit_suffix
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.kernel.reference import reference
@@ -16,6 +17,7 @@ from sim.start import start_state
 MAX_ITERATIONS = 60
 STARTS = (0.5, 0.75)  # of the inputs' range: a thrust by the square has no slope in the middle of a range of both signs
 STEP_TOLERANCE = 1e-14
+FILLED = (0.5, 0.1)  # how far above a wanted output states of its unit are tried, the first the farthest
 RATE_TOLERANCE = 1e-6  # of a rate at a rest point; where there is none, the least rate is far larger
 Array = NDArray[np.float64]
 
@@ -54,8 +56,64 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
             "check the parameters of rotors and gravity",
         )
     x0, u0 = found
-    _check_inputs(bound, u0, positions_rad)
+    _check_inputs(bound, u0, _place(bound, positions_rad))
     return OperatingPoint(positions_rad[0] if positions_rad else 0.0, x0, u0)
+
+
+def rest_with(bound: BoundPlant, places: Sequence[int], values: Sequence[float]) -> OperatingPoint:
+    """The rest point with the outputs at `places` at these values: of axes with a position by that, all others at 0, and of a plant
+    without one, a tank or a coil, by what it measures. Raises BadInput where there is none, or it needs an input beyond its limits.
+    """
+    wanted = dict(zip(places, values, strict=True))
+    outputs = list(bound.model.outputs.values())
+    at = {outputs[place]: value for place, value in wanted.items()}
+    arms = [axis.position for axis in bound.model.axes if axis.position is not None]
+    return equilibrium(bound, *(at.get(position, 0.0) for position in arms)) if arms else _measured(bound, wanted)
+
+
+def _measured(bound: BoundPlant, wanted: Mapping[int, float]) -> OperatingPoint:
+    names = list(bound.model.outputs)
+    told = ", ".join(said(names[place], value) for place, value in wanted.items())
+    commands = np.array([bound.commands(variable) for variable in bound.model.inputs]).reshape(-1, 2)
+    starts = [commands @ np.array([1.0 - share, share]) for share in STARTS]
+    tries = [(x, u) for x in _filled(bound, wanted) for u in starts]
+    found = next(filter(None, (_solve_measured(bound, wanted, x.copy(), u) for x, u in tries)), None)
+    where = f"plant {bound.plant.name!r} at {told}"
+    if found is None:
+        remedy = "check the parameters, and the references' range in [design]"
+        raise BadInput("equilibrium", where, "no solution of f(x, u) = 0", "a rest point that measures so", remedy)
+    _check_inputs(bound, found[1], where)
+    return OperatingPoint(0.0, *found)
+
+
+def _filled(bound: BoundPlant, wanted: Mapping[int, float]) -> Iterator[Array]:
+    """States to begin from: at 0, then those in the unit of a wanted output about its value, where a root has its slope."""
+    names = list(bound.model.outputs)
+    of_unit = {unit_suffix(names[place]): value for place, value in wanted.items()}
+    yield np.zeros(len(bound.model.states))
+    for share in FILLED:
+        values = [of_unit.get(unit_suffix(str(state)), 0.0) for state in bound.model.states]
+        yield np.array([value * (1.0 + share / (1.0 + index)) for index, value in enumerate(values)])
+
+
+def _solve_measured(bound: BoundPlant, wanted: Mapping[int, float], x: Array, u: Array) -> tuple[Array, Array] | None:
+    """Newton's method for no rate of any state and the wanted outputs; None where it finds nothing."""
+    model, equations = bound.model, reference(bound.model)
+    places, values = list(wanted), np.array(list(wanted.values()))
+    for _ in range(MAX_ITERATIONS):
+        at = (0.0, x, u, bound.p, np.zeros(len(model.axes)))
+        with np.errstate(all="ignore"):
+            wrong = np.concatenate([equations.rates(*at), equations.outputs(*at)[places] - values])
+            slopes = np.block(
+                [[equations.A(*at), equations.B(*at)], [equations.C(*at)[places], np.zeros((len(places), len(u)))]]
+            )
+        if not (np.all(np.isfinite(wrong)) and np.all(np.isfinite(slopes))):
+            return None
+        step = np.asarray(np.linalg.lstsq(slopes, wrong, rcond=None)[0])
+        x, u = x - step[: len(x)], u - step[len(x) :]
+        if np.all(np.abs(step) <= STEP_TOLERANCE * (1.0 + np.abs(np.concatenate([x, u])))):
+            return (x, u) if np.max(np.abs(wrong)) <= RATE_TOLERANCE * max(1.0, np.max(np.abs(values))) else None
+    return None
 
 
 def _begin(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ...]) -> tuple[Array, Array]:
@@ -110,13 +168,13 @@ def _check_stops(bound: BoundPlant, axis: Axis, position: float) -> None:
         )
 
 
-def _check_inputs(bound: BoundPlant, u0: Array, positions_rad: tuple[float, ...]) -> None:
+def _check_inputs(bound: BoundPlant, u0: Array, where: str) -> None:
     for variable, value in zip(bound.model.inputs, u0, strict=True):
         lower, upper = bound.limits(variable)
         if not lower <= value <= upper:
             raise BadInput(
                 f"input {variable}",
-                _place(bound, positions_rad),
+                where,
                 f"{value:.4g} {unit_of(str(variable))} needed to rest there",
                 f"{lower:g} to {upper:g} {unit_of(str(variable))}",
                 "choose a position that the inputs can hold",

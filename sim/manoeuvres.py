@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.table import Table
 from sim.bind import BoundPlant
-from sim.equilibrium import equilibrium
+from sim.equilibrium import equilibrium, rest_with
 from sim.wiring import wiring
 
 Array = NDArray[np.float64]
@@ -66,6 +66,7 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 STEP_SHARES = (0.0, 0.5, -0.3, 0.0)
 TIME_CONSTANTS = 8.0
 SHORTEST_HOLD_S, LONGEST_HOLD_S = 4.0, 15.0
+LONGEST_HOLD_SAMPLES = 5000  # of a slow plant, whose samples are few a second
 
 
 def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
@@ -75,7 +76,7 @@ def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
     """
     wires = wiring(bound, table.loops)
     middle_rad = [0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes]
-    point = equilibrium(bound, *positions(bound, wires.outputs, middle_rad))
+    point = rest_with(bound, wires.outputs, middle_rad)
     legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point.x0)]
     at_s = 0.0
     for place, axis, centre_rad, loop in zip(wires.outputs, table.axes, middle_rad, table.loops, strict=True):
@@ -95,14 +96,8 @@ def _hold_s(table: Table[Any], axis: Any, name: str) -> float:
     poles = table.origin.get(name, {}).get("poles_rad_s", [[-1.0, 0.0]])
     slowest_s = 1.0 / max(min(abs(real) for real, _ in poles), 1e-3)
     wanted_s = float(TIME_CONSTANTS * (slowest_s + 2.0 * axis.prefilter_time_constant_s))
-    return min(max(wanted_s, SHORTEST_HOLD_S), LONGEST_HOLD_S)
-
-
-def positions(bound: BoundPlant, places: Sequence[int], angles_rad: Sequence[float]) -> list[float]:
-    """Positions of the model's axes with the outputs at `places` at these angles, all others at 0."""
-    measured = list(bound.model.outputs.values())
-    wanted = {measured[place]: angle for place, angle in zip(places, angles_rad, strict=True)}
-    return [wanted.get(axis.position, 0.0) for axis in bound.model.axes if axis.position is not None]
+    longest_s = max(LONGEST_HOLD_S, LONGEST_HOLD_SAMPLES * table.sample_period_s)
+    return min(max(wanted_s, SHORTEST_HOLD_S), longest_s)
 
 
 def resting_outputs(bound: BoundPlant, x0: Array) -> list[float]:

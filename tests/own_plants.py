@@ -52,7 +52,7 @@ class OwnPlant:
 
 
 def _suffix(output: str) -> str:
-    return next((f"_{unit}" for unit in ("rad_s", "rad", "A", "V", "m") if output.endswith(f"_{unit}")), "")
+    return next((f"_{unit}" for unit in ("rad_s", "rad", "A", "V", "K", "m") if output.endswith(f"_{unit}")), "")
 
 
 ARM = {
@@ -72,6 +72,40 @@ return Model(
     name="NAME", states=(i,), inputs=(u,), outputs={"i_A": i}, parameters=PARAMETERS,
     rates={i: (u - p["R"] * i) / p["L"]}, axes=(), input_limits={u: (-12, 12)},
     places=Places(inputs={"input": InputPlace(u, "V", 12.0)}, sensors={"i_sensor": SensorPlace("i_A", "A", 6.0)}),
+)
+""",
+)
+
+# The pump fills the first, it flows into the second, which leaks: both flows go by the root of a height, which has no slope at 0.
+TANKS = OwnPlant(
+    {
+        "A": (0.015, 0.001, "m^2"),
+        "k": (5e-5, 5e-6, "m^3 s^-1 V^-1"),
+        "s": (1e-4, 1e-5, "m^2"),
+        "g": (9.81, 0.0, "m s^-2"),
+    },
+    {"h2_m": 1e-4},
+    """
+h1, h2, u = symbol("h1_m"), symbol("h2_m"), symbol("u_V")
+between = p["s"] * sympy.sign(h1 - h2) * sympy.sqrt(2 * p["g"] * sympy.Abs(h1 - h2))
+out = p["s"] * sympy.sqrt(2 * p["g"] * h2)
+return Model(
+    name="NAME", states=(h1, h2), inputs=(u,), outputs={"h2_m": h2}, parameters=PARAMETERS,
+    rates={h1: (p["k"] * u - between) / p["A"], h2: (between - out) / p["A"]}, axes=(), input_limits={u: (0, 12)},
+    places=Places(inputs={"pump": InputPlace(u, "V", 12.0)}, sensors={"gauge": SensorPlace("h2_m", "m", 1.0)}),
+)
+""",
+)
+# A body that a resistor heats.
+HEATER = OwnPlant(
+    {"C": (20.0, 2.0, "J K^-1"), "G": (0.8, 0.08, "W K^-1")},
+    {"T_K": 0.01},
+    """
+T, heat = symbol("T_K"), symbol("heat_W")
+return Model(
+    name="NAME", states=(T,), inputs=(heat,), outputs={"T_K": T}, parameters=PARAMETERS,
+    rates={T: (heat - p["G"] * T) / p["C"]}, axes=(), input_limits={heat: (0, 60)},
+    places=Places(inputs={"heater": InputPlace(heat, "W", 60.0)}, sensors={"probe": SensorPlace("T_K", "K", 50.0)}),
 )
 """,
 )

@@ -25,7 +25,7 @@ from verification.fixed_words import ErrorWords, TrackedWords
 from verification.ranges import CE150_MOTION, LawRanges, Motion, Range
 from verification.rounding import SLICES, bound_by_slices
 
-METHOD = "affine error forms of words over Arb balls (python-flint), Psi in {slices} slices, {motion}"
+METHOD = "affine error forms of words over Arb balls (python-flint), {slices}{motion}"
 
 
 def fixed_rounding_bound(table: ControllerTable, motion: Motion = CE150_MOTION, slices: int = SLICES) -> RoundingBound:

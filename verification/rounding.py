@@ -33,7 +33,7 @@ from verification.affine import AffineArithmetic, Tracked
 from verification.ranges import CE150_MOTION, LawRanges, Motion, Range, declared_ranges
 
 SLICES = 48
-METHOD = "affine error forms over Arb balls (python-flint), Psi in {slices} slices, {motion}"
+METHOD = "affine error forms over Arb balls (python-flint), {slices}{motion}"
 
 Restriction = Callable[[Any, Range], Any]
 
@@ -53,8 +53,16 @@ def bound_by_slices(
     """The largest bound of each output [V] over slices of the scheduling angle; `method` has room for `slices` and `motion`."""
     parts = list(_sliced(declared_ranges(table, motion), table, slices))
     bounds_V = [max(column) for column in zip(*(bound_of(table, part) for part in parts), strict=True)]
-    told = method.format(slices=len(parts), motion=stated_motion(table, motion))
+    told = method.format(slices=_stated_slices(table, len(parts)), motion=stated_motion(table, motion))
     return rounding_record(table, bounds_V, told)
+
+
+def _stated_slices(table: ControllerTable, count: int) -> str:
+    """Of what the ranges were cut into slices; nothing of a law without a schedule."""
+    if table.schedule is None:
+        return ""
+    symbol = table.loops[table.index(table.schedule.axis)].symbol
+    return f"{symbol.capitalize()} in {count} slices, "
 
 
 def rounding_record(table: ControllerTable, bounds_V: Sequence[float], method: str) -> RoundingBound:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.law_equations import state_words
+from codegen.law_equations import axis_state, state_words
+from codegen.scales import widest_reference
 from records.law_table import AxisRange, FlownTable
-from records.table import ControllerTable
+from records.table import PLAUSIBLE_V, ControllerTable
 
 Bits = NDArray[np.uint32]
 Numbers = NDArray[np.float32]
@@ -24,6 +25,8 @@ SPECIAL_BITS = np.array(
 )
 
 
+BEYOND = 1.2  # times the largest reference: as far as stimuli go where that is far
+JUMPS = "reference jumps"
 ARRIVALS = "arrivals"  # the stimulus of filters that are all but there
 
 
@@ -83,14 +86,15 @@ def reference_jumps(table: FlownTable, rng: np.random.Generator, steps: int, lan
     angles = np.stack([_wander(axis, rng, steps, lanes) for axis in table.axes], axis=-1)
     references = np.stack([_jumps(axis, rng, steps, lanes) for axis in table.axes], axis=-1)
     inputs = np.concatenate([references, angles], axis=-1).astype(np.float32)
-    return _from_rest("reference jumps", _bits(inputs))
+    return _from_rest(JUMPS, _bits(inputs))
 
 
 def saturating(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
     """References beyond their range and angles that jump from stop to stop, so that both outputs dwell at their limits."""
     shape = (steps, lanes, 2 * len(table.loops))
     dwell = rng.integers(0, 20, shape) == 0
-    inputs = _held_where_not(dwell, rng.uniform(-3.0, 3.0, shape)).astype(np.float32)
+    reach = np.array([max(3.0, BEYOND * widest_reference(axis)) for axis in table.axes] * 2)
+    inputs = _held_where_not(dwell, rng.uniform(-reach, reach, shape)).astype(np.float32)
     return _from_rest("saturation", _bits(inputs))
 
 
@@ -138,6 +142,21 @@ def arriving(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int
     references = starts + (side * rng.integers(1, 61, starts.shape)).astype(np.float32) * np.abs(np.spacing(starts))
     inputs = np.repeat(np.concatenate([references, starts], axis=-1)[np.newaxis], steps, axis=0)
     return Stimulus(ARRIVALS, _bits(starts), _bits(inputs))
+
+
+def at_the_bound(table: ControllerTable) -> Stimulus:
+    """One step at rest from v at the bound of what is plausible, and from its neighbours beyond: chance meets neither."""
+    bound = np.float32(PLAUSIBLE_V)
+    v_V = [sign * size for sign in (1.0, -1.0) for size in (bound, np.nextafter(bound, np.float32(np.inf)))]
+    angles = np.array([0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes], np.float32)
+    names = list(axis_state(table.order).__dataclass_fields__)
+    remembered = np.zeros((len(v_V), len(angles), len(names)), np.float32)
+    remembered[:, :, names.index("v_V")] = np.array(v_V, np.float32)[:, np.newaxis]
+    for name in ("reference_1_rad", "reference_2_rad"):
+        remembered[:, :, names.index(name)] = angles
+    accepted = np.tile(np.concatenate([angles, angles]), (len(v_V), 1))
+    states = np.concatenate([remembered.reshape(len(v_V), -1), accepted], axis=1)
+    return _from_rest("bound", _bits(accepted[np.newaxis]), _bits(states))
 
 
 def replayed(name: str, *series_rad: Numbers) -> Stimulus:

@@ -118,8 +118,8 @@ def law_formats(table: ControllerTable) -> LawFormats:
     voltage_places = WORD_BITS - (order - 1) - w_V_bits
     _refuse_coarse(axes, voltage_places, v_V)
     _refuse_fine(table, angle_places)
-    schedule_bits = max(0, bits_of(table.widest_schedule_rad))
-    reference_bits = 1 + max(0, bits_of(widest_region_rad(table)))  # a broken filter may reach the end of its word
+    schedule_bits = bits_of(table.widest_schedule_rad)
+    reference_bits = 1 + bits_of(widest_region_rad(table))  # a broken filter may reach the end of its word
     shared = _Shared(
         table, angle_places, voltage_places, error_rad_bits, s_V_bits, w_V_bits, schedule_bits, reference_bits
     )
@@ -286,7 +286,7 @@ def _widest_s(table: ControllerTable, axis: AxisLaw) -> float:
 
 def widest_feedforward(table: ControllerTable, axis: AxisLaw) -> float:
     """Bound of the feed-forward voltage over all references that a filtered word can hold [V]."""
-    return polynomial_bound(axis.feedforward_V, 2.0 ** max(0, bits_of(widest_region_rad(table))))
+    return polynomial_bound(axis.feedforward_V, 2.0 ** bits_of(widest_region_rad(table)))
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ depend on Q(1) and P(1). In the delta form these are coefficients of their own; 
 coefficients up to a million times larger cancel.
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -56,10 +55,11 @@ class Migration:
 
 @dataclass(frozen=True)
 class ScheduledAxis:
-    """One axis as designed over the grid (points,) and as scheduled."""
+    """One axis as designed over the grid (points,) and as scheduled; `place` says in words where on it something is."""
 
     name: str
     wishes: AxisSettings
+    place: Callable[[str, float], str]
     grid_rad: Array
     designs: tuple[DeltaForm, ...]
     degree: int
@@ -84,8 +84,7 @@ def migrations(axis: ScheduledAxis, psi_rad: Array, plants: Sequence[PlantPolyno
 
 def exact_design(axis: ScheduledAxis, plant: PlantPolynomials, psi_rad: float) -> DeltaForm:
     """The controller that eq (26) gives for `plant` itself, without fit."""
-    where = f"{axis.name} at {math.degrees(psi_rad):.1f} deg"
-    return placed(transfer_from_polynomials(plant.b, plant.a), plant, axis.wishes, where).delta
+    return placed(transfer_from_polynomials(plant.b, plant.a), plant, axis.wishes, axis.place(axis.name, psi_rad)).delta
 
 
 def pole_map(plants: Sequence[PlantPolynomials], controllers: Sequence[DeltaForm]) -> Poles:

@@ -23,9 +23,18 @@ OF_ENCODERS uint32_t still_ticks(uint32_t before, uint32_t moved, int32_t duty, 
     const uint32_t moved_##angle = distance(self->last.angle##_counts, now->angle##_counts);
 #define STILL(angle, voltage, motor, VOLTAGE) \
     self->still_##angle = still_ticks(self->still_##angle, moved_##angle, applied->motor##_ticks, full_drive, passed);
-#define NEAR(angle, voltage, motor, VOLTAGE) moved_##angle < farthest &&
-#define OFF_ITS_ENDS(angle, least, most) now->angle##_counts > (least) && now->angle##_counts < (most) &&
-#define TURNING(angle, voltage, motor, VOLTAGE) self->still_##angle < PROTOCOL_ENCODER_STILL_PERIODS &&
+#define NEAR(angle, voltage, motor, VOLTAGE) \
+    if (moved_##angle >= farthest) { \
+        return false; \
+    }
+#define TURNING(angle, voltage, motor, VOLTAGE) \
+    if (self->still_##angle >= PROTOCOL_ENCODER_STILL_PERIODS) { \
+        return false; \
+    }
+#define OFF_ITS_ENDS(angle, least, most) \
+    if (now->angle##_counts <= (least) || now->angle##_counts >= (most)) { \
+        return false; \
+    }
 
 bool encoder_watch_believes(
     encoder_watch *self, const encoder_counts *now, const motor_duties *applied, int32_t full_drive, uint32_t passed)
@@ -37,5 +46,8 @@ bool encoder_watch_believes(
     (void)farthest;
     (void)applied;
     (void)full_drive;
-    return PROTOCOL_ENCODER_LOOPS(NEAR) PROTOCOL_ENCODER_LOOPS(TURNING) PROTOCOL_ANALOGUE_LOOPS(OFF_ITS_ENDS) true;
+    PROTOCOL_ENCODER_LOOPS(NEAR)
+    PROTOCOL_ENCODER_LOOPS(TURNING)
+    PROTOCOL_ANALOGUE_LOOPS(OFF_ITS_ENDS)
+    return true;
 }

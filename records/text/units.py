@@ -4,42 +4,56 @@ import math
 import re
 from collections.abc import Mapping
 
-Dimension = tuple[int, int, int, int]  # powers of kg, m, s, V
+Dimension = tuple[int, int, int, int, int]  # powers of kg, m, s, V, K
 
 _SYMBOLS: Mapping[str, Dimension] = {
-    "kg": (1, 0, 0, 0),
-    "m": (0, 1, 0, 0),
-    "s": (0, 0, 1, 0),
-    "V": (0, 0, 0, 1),
-    "N": (1, 1, -2, 0),
-    "A": (1, 2, -3, -1),  # W/V
-    "Hz": (0, 0, -1, 0),
-    "rad": (0, 0, 0, 0),
-    "1": (0, 0, 0, 0),
-    "-": (0, 0, 0, 0),
+    "kg": (1, 0, 0, 0, 0),
+    "m": (0, 1, 0, 0, 0),
+    "s": (0, 0, 1, 0, 0),
+    "V": (0, 0, 0, 1, 0),
+    "K": (0, 0, 0, 0, 1),
+    "N": (1, 1, -2, 0, 0),
+    "Pa": (1, -1, -2, 0, 0),
+    "J": (1, 2, -2, 0, 0),
+    "W": (1, 2, -3, 0, 0),
+    "A": (1, 2, -3, -1, 0),  # W/V
+    "Ohm": (-1, -2, 3, 2, 0),
+    "H": (-1, -2, 4, 2, 0),
+    "F": (1, 2, -2, -2, 0),
+    "Hz": (0, 0, -1, 0, 0),
+    "rad": (0, 0, 0, 0, 0),
+    "1": (0, 0, 0, 0, 0),
+    "-": (0, 0, 0, 0, 0),
 }
 _SUFFIXES = (
     "rad_s2",
     "rad_s",
     "m_s2",
     "m_s",
+    "m3_s",
+    "kg_s",
     "rad",
     "Nm",
+    "m3",
+    "kg",
+    "Pa",
     "m",
     "V",
     "A",
     "N",
+    "K",
+    "W",
     "s",
 )  # a longer one before its own ending
 _FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+))?$")
 
 
 def dimension(unit: str) -> Dimension:
-    """Powers of (kg, m, s, V) of a product such as "rad s^-2 V^-1"; a remark in parentheses is passed over.
+    """Powers of (kg, m, s, V, K) of a product such as "rad s^-2 V^-1"; a remark in parentheses is passed over.
 
     Only coherent SI symbols are known, so equal dimensions mean equal scale. Raises ValueError naming the symbol that is not known.
     """
-    total = [0, 0, 0, 0]
+    total = [0, 0, 0, 0, 0]
     for sign, part in _parts(re.sub(r"\([^)]*\)", " ", unit)):
         match = _FACTOR.match(part)
         if match is None or match[1] not in _SYMBOLS:
@@ -47,7 +61,7 @@ def dimension(unit: str) -> Dimension:
         power = sign * int(match[2] or 1)
         for axis, exponent in enumerate(_SYMBOLS[match[1]]):
             total[axis] += power * exponent
-    return total[0], total[1], total[2], total[3]
+    return total[0], total[1], total[2], total[3], total[4]
 
 
 def dimensions(unit: str) -> tuple[Dimension, ...]:

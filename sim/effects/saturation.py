@@ -12,7 +12,10 @@ from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.prior import COMMON
 
-NEVER = 30.0  # beyond every declared limit of the plants: the effect is absent
+NEVER = (
+    30.0  # beyond every declared limit of the plants, or so much more than a larger usual command: the effect is absent
+)
+BEYOND = 1.25
 
 # Of a corner, as a share of where it lies.
 ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.2,), refining=True)
@@ -22,12 +25,13 @@ def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each input."""
     for place, entry in model.places.inputs.items():
         u, size = entry.variable, entry.size
+        never = max(NEVER, BEYOND * size)
         grid = tuple(share * size for share in (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9))
         yield Effect(
             name=f"{place}.saturation",
             depends=f"limit of {u}",
             parameters=(
-                EffectParameter("limit", entry.unit, 0.05 * size, NEVER, 0.6 * size, NEVER, grid, role=Role.LEVEL),
+                EffectParameter("limit", entry.unit, 0.05 * size, never, 0.6 * size, never, grid, role=Role.LEVEL),
                 ROUNDING,
             ),
             equation=f"{u} -> max(-limit, min(limit, {u})), its corner rounded over limit (1 -+ w)",

@@ -45,10 +45,18 @@ class Reference:
         return _function(self._model, jacobian(self._rates, self._model.parameter_symbols))
 
     @cached_property
+    def outputs(self) -> Function:
+        """What is measured (r,)."""
+        return _function(self._model, self._outputs, flat=True)
+
+    @cached_property
     def C(self) -> Function:
         """Jacobian (r, n) of the outputs in x."""
-        outputs = sympy.Matrix(list(self._model.outputs.values()))
-        return _function(self._model, jacobian(outputs, self._model.states))
+        return _function(self._model, jacobian(self._outputs, self._model.states))
+
+    @cached_property
+    def _outputs(self) -> sympy.Matrix:
+        return sympy.Matrix(list(self._model.outputs.values()))
 
     @cached_property
     def _rates(self) -> sympy.Matrix:

@@ -66,7 +66,7 @@ def test_the_conversion_in_z_is_that_of_python_control():
     linear = elevation(0.3)
     plant = control.ss(linear.A, linear.B, linear.C, [[0.0]])
     expected = control.ss2tf(control.sample_system(plant, SAMPLE_PERIOD_S, method="zoh"))
-    found = transfer._in_z(linear, SAMPLE_PERIOD_S)
+    found = transfer._in_z(linear, SAMPLE_PERIOD_S, 1.0)
     np.testing.assert_allclose(found.a, expected.den[0][0], atol=1e-12)
     np.testing.assert_allclose(found.b[1:], expected.num[0][0], atol=1e-13)
 
@@ -85,3 +85,25 @@ def test_a_transfer_function_that_disagrees_with_the_exponential_is_refused(monk
     monkeypatch.setattr(transfer, "sample", wrong)
     with pytest.raises(VerificationFailed, match=r"elevation at 3 deg.*differs"):
         transfer_function(elevation(0.0), SAMPLE_PERIOD_S, "elevation at 3 deg")
+
+
+@pytest.mark.parametrize("factor", [1e-15, 1e-9, 1e9])
+@pytest.mark.parametrize("sample_period_s", [5e-4, SAMPLE_PERIOD_S, 0.05])
+def test_the_unit_of_the_output_changes_nothing_but_the_size_of_b(factor, sample_period_s, monkeypatch):
+    """Truth: B is linear in C. A plant in other units is as well known, and one that disagrees is refused in any."""
+    linear = elevation(0.0)
+    other = replace(linear, C=linear.C * factor)
+    found, known = (transfer_function(plant, sample_period_s, "elevation") for plant in (other, linear))
+    np.testing.assert_allclose(found.b, factor * known.b, rtol=1e-12)
+    monkeypatch.setattr(transfer, "MAX_DISAGREEMENT", 1e-10)
+    transfer_function(other, sample_period_s, "elevation")
+    right = sample(other, sample_period_s)
+    monkeypatch.setattr(transfer, "sample", lambda *_: replace(right, B=right.B * [[1.0], [1.0], [1.0 + 1e-6]]))
+    with pytest.raises(VerificationFailed, match="differs"):
+        transfer_function(other, sample_period_s, "elevation")
+
+
+def test_an_input_that_never_reaches_the_output_is_refused():
+    linear = elevation(0.0)
+    with pytest.raises(VerificationFailed, match="impulse response"):
+        transfer_function(replace(linear, C=0.0 * linear.C), SAMPLE_PERIOD_S, "elevation")

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from records.errors import BadInput
-from sim.equilibrium import equilibrium
+from records.plant import load_plant
+from sim.bind import bind
+from sim.equilibrium import equilibrium, rest_with
 from sim.kernel.reference import reference
+from tests.own_plants import TANKS
 
 U_M0_V = {
     -45: 4.653,
@@ -69,3 +72,17 @@ def test_an_input_beyond_its_range_is_named(bound):
     weak[[str(s) for s in bound.model.parameter_symbols].index("u_max")] = 5.0
     with pytest.raises(BadInput, match=r"at 0 deg: input u_M_V: got 5.607 V needed to rest there, expected 0 to 5 V"):
         equilibrium(type(bound)(bound.plant, bound.model, weak, bound.sd), 0.0)
+
+
+def test_a_plant_without_positions_rests_where_what_it_measures_is_wanted(tmp_path):
+    """Truth by hand: what flows between the tanks flows out, so the first stands twice as high; u = s sqrt(2 g h2) / k. To 1e-9."""
+    bound = bind(load_plant(TANKS.write(tmp_path, "tanks")))
+    point = rest_with(bound, [0], [0.4])
+    np.testing.assert_allclose(point.x0, [0.8, 0.4], rtol=1e-9)
+    np.testing.assert_allclose(point.u0, [1e-4 * np.sqrt(2 * 9.81 * 0.4) / 5e-5], rtol=1e-9)
+    with pytest.raises(BadInput, match=r"at 4 m: input u_V.*0 to 12 V"):
+        rest_with(bound, [0], [4.0])
+
+
+def test_of_a_plant_with_positions_those_that_are_measured_are_held(bound):
+    np.testing.assert_array_equal(rest_with(bound, [0], [0.3]).x0, equilibrium(bound, 0.3).x0)

@@ -54,8 +54,10 @@ function meet(told) {
 function field(output, place) {
   const label = document.createElement("label"), input = document.createElement("input");
   const [low, high] = facts.limits_deg[place];
-  Object.assign(input, { type: "number", step: "any", min: Math.ceil(low * 10) / 10, max: Math.floor(high * 10) / 10, value: 0, id: "ref" + place });
-  label.append(`${output.label} [${output.unit}], ${low.toFixed(0)} to ${high.toFixed(0)}`, input);
+  const digits = Math.max(1, 2 - Math.floor(Math.log10(high - low))), whole = 10 ** digits; // a tenth, or a hundredth of a small range
+  const [least, most] = [Math.ceil(low * whole) / whole, Math.floor(high * whole) / whole];
+  Object.assign(input, { type: "number", step: "any", min: least, max: most, value: Math.min(Math.max(0, least), most), id: "ref" + place });
+  label.append(`${output.label} [${output.unit}], ${low.toFixed(digits - 1)} to ${high.toFixed(digits - 1)}`, input);
   return label;
 }
 

@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--psi-rad",
         type=float,
         metavar="ANGLE",
-        help="at which the first loop, the elevation, rests; default: the middle of its references",
+        help="what the first loop measures at rest, in its unit; default: the middle of its references",
     )
     parser.add_argument(
         "--repeats",

@@ -79,7 +79,7 @@ class BoardSource:
         }
 
     def obey(self, wish: Mapping[str, Any]) -> None:
-        """Arm, stop, fly the manoeuvre, or take references in deg."""
+        """Arm, stop, fly the manoeuvre, or take references in the units shown."""
         deeds = {"arm": self._arm, "stop": self.disarm, "manoeuvre": self._begin}
         if wish["do"] == "reference":
             self._refer(wish.get("deg"))
@@ -137,7 +137,7 @@ class BoardSource:
         axes = self._table.axes
         if not isinstance(angles_deg, list) or len(angles_deg) != len(axes):
             names = " and ".join(loop.axis for loop in self._table.loops)
-            raise _refused(repr(angles_deg)[:40], f"{len(axes)} angles in deg", f"give {names}")
+            raise _refused(repr(angles_deg)[:40], f"{len(axes)} references", f"give {names}")
         wanted = []
         for angle, axis, loop in zip(angles_deg, axes, self._table.loops, strict=True):
             unit, factor = shown(loop.output)

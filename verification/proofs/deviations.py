@@ -7,6 +7,10 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
+from codegen.fixed.constants import fixed_constants, word_number
+from codegen.law_frame import without_vanishing_powers
+from records.table import ControllerTable
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -25,7 +29,8 @@ class Finding:
 class Deviation:
     """A rule (* for any), the files (shell pattern) and lines (regular expression) where it may be broken, and why.
 
-    `arithmetic` limits it to the law in one arithmetic; one that `depends_on_table` may find nothing to cover.
+    `arithmetic` limits it to the law in one arithmetic, `where` to tables that this is said of (`said_of`); one that
+    `depends_on_table` may find nothing to cover.
     """
 
     rule: str
@@ -33,6 +38,7 @@ class Deviation:
     reason: str
     line: str = ""
     arithmetic: str | None = None
+    where: str | None = None
     depends_on_table: bool = False
 
     def covers(self, finding: Finding) -> bool:
@@ -59,11 +65,35 @@ class Judgement:
         return (*(str(finding) for finding in self.unjustified), *idle)
 
 
-def load_deviations(path: Path, arithmetic: str) -> tuple[Deviation, ...]:
-    """The deviations of a file that concern the law in `arithmetic`."""
+def said_of(table: ControllerTable, arithmetic: str) -> frozenset[str]:
+    """What a deviation may ask of a table and of the law made of it."""
+    feedforwards = [without_vanishing_powers(axis.feedforward_V) for axis in table.axes]
+    asked = {
+        "no schedule": table.schedule is None,
+        "no feed-forward": not any(feedforwards),
+        "one state": table.order == 1,
+        "a difference that no term reads": any(not without_vanishing_powers(axis.p[-1]) for axis in table.axes)
+        or any(len(axis.p) <= table.order for axis in table.axes),
+        **(_said_of_products(table) if arithmetic == "fixed" else {}),
+    }
+    return frozenset(words for words, holds in asked.items() if holds)
+
+
+def _said_of_products(table: ControllerTable) -> dict[str, bool]:
+    terms = [term for axis in fixed_constants(table, word_number).axes for term in axis.terms]
+    short = [term.polynomial for term in terms if term.is_short]
+    return {
+        "no narrow product": not any(term.is_narrow for term in terms),
+        "no long product": all(term.is_short or term.is_narrow for term in terms),
+        "no negative short coefficient": all(form.constant >= 0 and not form.powers for form in short),
+    }
+
+
+def load_deviations(path: Path, arithmetic: str, said: frozenset[str] = frozenset()) -> tuple[Deviation, ...]:
+    """The deviations of a file that concern the law in `arithmetic`, of a table that this is `said` of."""
     entries = tomllib.loads(path.read_text(encoding="utf-8"))["deviation"]
     deviations = (Deviation(**entry) for entry in entries)
-    return tuple(deviation for deviation in deviations if deviation.arithmetic in (None, arithmetic))
+    return tuple(d for d in deviations if d.arithmetic in (None, arithmetic) and (d.where is None or d.where in said))
 
 
 def judge(findings: Sequence[Finding], deviations: Sequence[Deviation]) -> Judgement:

@@ -11,10 +11,10 @@ from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
 from sim.bind import BoundPlant
-from sim.equilibrium import equilibrium
+from sim.equilibrium import rest_with
 from sim.kernel.law import is_kernel_s
 from sim.loop import Controller, Wired, fly, fly_law
-from sim.manoeuvres import Manoeuvre, positions, resting_outputs
+from sim.manoeuvres import Manoeuvre, resting_outputs
 from sim.wiring import wiring
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ def closed_loop_sweeps(
     rest = np.array([0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes])
     rest[0] = rest[0] if rest_rad is None else rest_rad
     wires = wiring(bound, table.loops)
-    point = equilibrium(bound, *positions(bound, wires.outputs, rest.tolist()))
+    point = rest_with(bound, wires.outputs, rest.tolist())
     found = {}
     for place, loop in enumerate(table.loops):
         swept = np.zeros((t_s.size, len(rest)))

@@ -51,7 +51,7 @@ def test_limits_in_the_wrong_order_or_a_safe_value_outside_them_are_found() -> N
     swapped = changed_axis(TABLE, "elevation", u_min_V=10.0, u_max_V=0.0)
     outside = changed_axis(TABLE, "azimuth", u_safe_V=11.0)
     for table, axis in ((swapped, "elevation"), (outside, "azimuth")):
-        (question,) = (q for q in questions(table, LAW_C) if q.claim.startswith(f"the {axis} voltage"))
+        (question,) = (q for q in questions(table, LAW_C) if q.claim.startswith(f"the input of the {axis}"))
         assert not holds(question)
 
 

@@ -4,7 +4,6 @@ from records.board import STM32G071, Board
 from records.verification import Validation, Verification
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Row
-from twinlaw.pages.run.design import degrees
 
 _OUTCOMES = {"proved": "proved", "failed": "FAILS", "skipped": "skipped"}
 
@@ -45,7 +44,7 @@ def verification_rows(verification: Verification) -> list[Row]:
     rows += [
         (
             f"{row.axis} poles after fit and rounding",
-            f"{row.designed_slowest_rad_s:.2f} -> {row.worst_slowest_rad_s:.2f} rad/s at {degrees(row.at_psi_rad)}",
+            f"{row.designed_slowest_rad_s:.2f} -> {row.worst_slowest_rad_s:.2f} rad/s{f' at {row.at}' if row.at else ''}",
             _held(row.stable),
         )
         for row in verification.poles

@@ -25,7 +25,8 @@ _DESIGN_HEADING: Row = (
 
 def design_heading(report: DesignReport) -> Row:
     """The heading of `design_rows`."""
-    return tuple(word.format(arithmetic=report.arithmetic, angle=report.angle) for word in _DESIGN_HEADING)
+    angle = report.angle if report.is_scheduled else ""
+    return tuple(word.format(arithmetic=report.arithmetic, angle=angle).rstrip() for word in _DESIGN_HEADING)
 
 
 def design_rows(report: DesignReport) -> list[Row]:
@@ -39,7 +40,7 @@ def design_rows(report: DesignReport) -> list[Row]:
         "",
         "",
         f"{report.coupled.worst_rad_s:.2f} rad/s",
-        said(report.scheduled_by, report.coupled.at_psi_rad),
+        _where(report, report.coupled.at_psi_rad),
     )
     return [*rows, (*coupled, *[""] * (len(_DESIGN_HEADING) - len(coupled)))]
 
@@ -51,13 +52,17 @@ def _design_row(report: DesignReport, axis: AxisReport) -> Row:
         f"{axis.designed_slowest_rad_s:.2f} rad/s",
         f"{axis.after_fit.worst_rad_s:.2f} rad/s",
         f"{axis.after_rounding.worst_rad_s:.2f} rad/s",
-        said(report.scheduled_by, axis.after_rounding.at_psi_rad),
+        _where(report, axis.after_rounding.at_psi_rad),
         f"{worst.sensitivity:.2f}",
         degrees(worst.phase_rad),
         f"{worst.gain_up:.2f} / {worst.gain_down:.2f}",
         f"{1e3 * worst.delay_s:.0f} ms",
         f"{100 * axis.fit_error.q:.2g} %",
     )
+
+
+def _where(report: DesignReport, at: float) -> str:
+    return said(report.scheduled_by, at) if report.is_scheduled else "rest"
 
 
 def design_facts(report: DesignReport) -> dict[str, Any]:

@@ -43,9 +43,10 @@ def design_sections(report: DesignReport) -> tuple[Section, ...]:
 
 def _poles(report: DesignReport) -> Section:
     panels = [_pole_panel(axis) for axis in report.axes]
+    where = f"one of {len(report.psi_rad)} points of the schedule" if report.is_scheduled else "the rest point"
     return Section(
         "Closed-loop poles before and after fit and rounding",
-        (f"Each dot is a pole at one of {len(report.psi_rad)} angles; the crosses are the poles that were asked for.",),
+        (f"Each dot is a pole at {where}; the crosses are the poles that were asked for.",),
         plots=(row(panels, ["real part [rad/s]"] * len(panels)),),
     )
 
@@ -65,8 +66,11 @@ def _pole_panel(axis: AxisReport) -> Panel:
 
 
 def _margins(report: DesignReport) -> Section:
-    unit, factor = shown(report.scheduled_by)
-    psi_deg = factor * report.psi_rad
+    told = f"Of the {report.arithmetic} table, as it flies."
+    table = Table(design_rows(report), design_heading(report))
+    if not report.is_scheduled:
+        return Section("Margins", (told,), (table,))
+    psi_deg = shown(report.scheduled_by)[1] * report.psi_rad
 
     def panel(label: str, figure: str, scale: float) -> Panel:
         curves = [
@@ -83,25 +87,47 @@ def _margins(report: DesignReport) -> Section:
     )
     return Section(
         f"Margins over the {report.angle}",
-        (
-            f"Of the {report.arithmetic} table, as it flies. The last panel closes all loops on the whole plant, cross-coupling included.",
-        ),
-        (Table(design_rows(report), design_heading(report)),),
-        (stack(panels, f"{report.angle} Psi [{unit}]", panel_height_in=1.7),),
+        (f"{told} The last panel closes all loops on the whole plant, cross-coupling included.",),
+        (table,),
+        (stack(panels, _schedule_label(report), panel_height_in=1.7),),
     )
 
 
+def _schedule_label(report: DesignReport) -> str:
+    loop = report.loop(report.angle)
+    return f"{report.angle} {loop.symbol} [{shown(loop.output)[0]}]"
+
+
 def _coefficients(report: DesignReport) -> Section:
+    if not report.is_scheduled:
+        return _constants(report)
     worst = [f"{axis.axis} {_small(report.loop(axis.axis), axis.feedforward_error_V)}" for axis in report.axes]
     return Section(
         f"Coefficients over the {report.angle}",
         (
-            f"The law's coefficients in powers of delta = 1 - z^-1, and the voltage of the operating point: dots as designed at each of "
+            f"The law's coefficients in powers of delta = 1 - z^-1, and the input of the operating point: dots as designed at each of "
             f"{len(report.points_rad)} operating points, lines as fitted by one polynomial each. p_0 = P(1) is 0 everywhere, as the law "
             f"integrates. The fit of u_ff is off by at most {' and '.join(worst)}.",
         ),
         (),
         (coefficient_plot(report),),
+    )
+
+
+def _constants(report: DesignReport) -> Section:
+    rows = []
+    for axis in report.axes:
+        which = dict.fromkeys(_which(axis))
+        rows += [
+            (axis.axis, *_named(report.loop(axis.axis), *one), f"{_values(axis, *one)[1][0]:.7g}") for one in which
+        ]
+    return Section(
+        "Coefficients",
+        (
+            "The law's coefficients in powers of delta = 1 - z^-1, and the input of the rest point; constants, as the law goes by no "
+            "schedule. p_0 = P(1) is 0, as the law integrates.",
+        ),
+        (Table(rows, ("loop", "coefficient", "unit", "value")),),
     )
 
 
@@ -113,9 +139,7 @@ def coefficient_plot(report: DesignReport) -> str:
     """q_i, p_i and u_ff of both axes over Psi, as SVG text."""
     axes = report.axes
     lines = [[_coefficient(report, axis, *which) for axis in axes] for which in _which(report.axes[0])]
-    return grid(
-        lines, [axis.axis for axis in axes], f"{report.angle} Psi [{shown(report.scheduled_by)[0]}]", height_in=1.3
-    )
+    return grid(lines, [axis.axis for axis in axes], _schedule_label(report), height_in=1.3)
 
 
 def _which(axis: AxisReport) -> list[tuple[str, int]]:
@@ -126,16 +150,10 @@ def _which(axis: AxisReport) -> list[tuple[str, int]]:
 
 def _coefficient(report: DesignReport, axis: AxisReport, of: str, place: int) -> Panel:
     fine = np.linspace(report.points_rad[0], report.points_rad[-1], FINE)
-    loop = report.loop(axis.axis)
-    volt, per = unit_of(loop.input) or "1", unit_of(loop.output) or "1"
-    if of == "u_ff":
-        designed, fitted, label = axis.operating_V, axis.feedforward_V, f"u_ff [{volt}]"
-    else:
-        designed = np.array([getattr(design, of)[place] for design in axis.designs])
-        fitted = getattr(axis.schedule, of)[place]
-        label = f"q_{place} [{volt}/{per}]" if of == "q" else f"p_{place} [-]"
+    designed, fitted = _values(axis, of, place)
+    name, unit = _named(report.loop(axis.axis), of, place)
     return Panel(
-        label,
+        f"{name} [{unit}]",
         _fit(
             shown(report.scheduled_by)[1],
             report.points_rad,
@@ -144,6 +162,19 @@ def _coefficient(report: DesignReport, axis: AxisReport, of: str, place: int) ->
             np.asarray(polyval(fine, fitted), dtype=float),
         ),
     )
+
+
+def _values(axis: AxisReport, of: str, place: int) -> tuple[Array, Sequence[float]]:
+    """A coefficient as designed at each operating point, and its polynomial."""
+    if of == "u_ff":
+        return axis.operating_V, axis.feedforward_V
+    return np.array([getattr(design, of)[place] for design in axis.designs]), getattr(axis.schedule, of)[place]
+
+
+def _named(loop: Loop, of: str, place: int) -> tuple[str, str]:
+    """A coefficient's name and unit."""
+    volt, per = unit_of(loop.input) or "1", unit_of(loop.output) or "1"
+    return ("u_ff", volt) if of == "u_ff" else (f"{of}_{place}", f"{volt}/{per}" if of == "q" else "-")
 
 
 def _fit(factor: float, points_rad: Array, designed: Array, fine_rad: Array, fitted: Array) -> Sequence[Curve]:

@@ -30,6 +30,15 @@ _NAMES = {
     "u_T_V": "tail rotor u_T",
 }
 
+_OF_SEVERAL = (
+    "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; beside "
+    "them how far the other axis' steps push it out of rest, how far its input travels, and how often that turns round."
+)
+_OF_ONE = (
+    "Overshoot and steady error are of the steps of its reference, as its sensor shows them; beside them how far its input travels, "
+    "and how often that turns round."
+)
+
 
 def run_page(
     plant: str,
@@ -94,9 +103,8 @@ def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, in
         "Flight",
         (
             "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
-            "emulated STM32G071: angles go to the board through its serial line, voltages come back, one frame each per sample.",
-            "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; beside "
-            "them how far the other axis' steps push it out of rest, how far its input travels, and how often that turns round.",
+            "emulated STM32G071: what is measured goes to the board through its serial line, inputs come back, one frame each per sample.",
+            *([_OF_SEVERAL] if len(tracking) > 1 else [_OF_ONE]),
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
         (Table(tracking_rows(tracking), TRACKING_HEADING),),

@@ -125,7 +125,7 @@ int main(void)
         const uint32_t places = Frama_C_unsigned_int_interval(0u, 30u);
         const int32_t words[] = {{
             floored(one, places), low_half(one), negative_part(one), accepted(one, other), wrapped(one, places),
-            masked(one, (uint32_t)other), held(one, LAW_@ANGLE@_REF_MIN_RAD, LAW_@ANGLE@_REF_MAX_RAD), held_angle(one, other),
+            masked(one, (uint32_t)other), held(one, @LEAST@, @MOST@), held_angle(one, other),
         }};
         const uint32_t within = is_within(one, places);
         const int32_t high = high_word(product(one, other));
@@ -136,7 +136,10 @@ int main(void)
 
 def decisions_driver(loops: tuple[Loop, ...]) -> str:
     """Each decision on any words; references are held within the first loop's range."""
-    return _DECISIONS_DRIVER.replace("@ANGLE@", Names(loops[0]).angle)
+    names, text = Names(loops[0]), _DECISIONS_DRIVER
+    for place, end in (("@LEAST@", "MIN"), ("@MOST@", "MAX")):
+        text = text.replace(place, f"LAW_{names.angle}_REF_{end}{names.angle_unit}")
+    return text
 
 
 def decision_view(law_c: str) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from codegen.law_frame import LawInput
 from codegen.law_terms import Names
+from codegen.numbers import c_float32
 from records.loops import Loop
 from verification.ranges import Range
 
@@ -66,7 +67,7 @@ int main(void)
 }}
 """
 
-PREDICATES_DRIVER = """#include "law.c"
+_PREDICATES_DRIVER = """#include "law.c"
 #include "__fc_builtin.h"
 
 static law_number any_number(void)
@@ -82,8 +83,7 @@ int main(void)
         const law_number one = any_number();
         const law_number other = any_number();
         const bool answers[] = {is_less(one, other), is_finite(one), is_nan(one), is_plausible(one, other)};
-        const law_number settled = settle(one, other);
-        const law_number arrived = advanced(one, 0.0f, other);
+@SETTLED@        const law_number arrived = advanced(one, 0.0f, other);
     }
 }
 """
@@ -92,11 +92,24 @@ int main(void)
 def comparison_view(law_c: str) -> str:
     """law.c with its predicates on bits as comparisons of floats; raises ValueError where one of them is not as it was."""
     for name, meaning in _MEANING.items():
+        if name == "settle" and not _has_settle(law_c):
+            continue
         found = re.compile(rf"static \w+ {name}\([^)]*\)\n\{{\n.*?\n\}}\n", re.DOTALL)
         law_c, count = found.subn(lambda _, meaning=meaning: meaning, law_c)  # type: ignore[misc]
         if count != 1:
             raise ValueError(f"law.c defines {name} {count} times, not once")
     return law_c
+
+
+def predicates_driver(law_c: str) -> str:
+    """Each predicate of law.c on any bits."""
+    settled = "        const law_number settled = settle(one, other);\n"
+    return _PREDICATES_DRIVER.replace("@SETTLED@", settled if _has_settle(law_c) else "")
+
+
+def _has_settle(law_c: str) -> bool:
+    """A law without a schedule has no angle to settle."""
+    return "law_number settle(" in law_c
 
 
 def driver_in_range(loops: tuple[Loop, ...], given: LawInput[Range]) -> str:
@@ -128,11 +141,12 @@ def _driver(loops: tuple[Loop, ...], references: Sequence[str], angles: Sequence
 def asserted_outputs(loops: tuple[Loop, ...], voltage: str) -> Iterator[str]:
     """Lines of C that assert the limits of each output, and of the duty of `voltage`."""
     for loop in loops:
-        prefix, name = Names(loop).voltage, loop.motor
-        yield f"        /*@ assert {name}_within: LAW_{prefix}_MIN_V <= output.{loop.input} <= LAW_{prefix}_MAX_V; */"
+        names, name = Names(loop), loop.motor
+        least, most = (f"LAW_{names.voltage}_{end}{names.voltage_unit}" for end in ("MIN", "MAX"))
+        yield f"        /*@ assert {name}_within: {least} <= output.{loop.input} <= {most}; */"
         yield f"        const int32_t {name}_ticks = law_duty_{name}({voltage});"
         yield f"        /*@ assert {name}_duty: -LAW_PWM_TICKS <= {name}_ticks <= LAW_PWM_TICKS; */"
 
 
 def _interval(limits: Range) -> str:
-    return f"Frama_C_float_interval({limits[0]:.9g}f, {limits[1]:.9g}f)"
+    return f"Frama_C_float_interval({c_float32(limits[0])}, {c_float32(limits[1])})"

@@ -20,10 +20,10 @@ from pathlib import Path
 from records.verification import ProofResult
 from verification.proofs.behaviour.eva_fixed import decision_view, decisions_driver, driver
 from verification.proofs.behaviour.eva_source import (
-    PREDICATES_DRIVER,
     comparison_view,
     driver_in_range,
     driver_of_any_bits,
+    predicates_driver,
 )
 from verification.proofs.subject import Subject
 from verification.proofs.tools import run_tool
@@ -84,7 +84,7 @@ def _float32_analyses(subject: Subject) -> tuple[Analysis, ...]:
         Analysis("inputs of any bits", {**view, "driver.c": driver_of_any_bits(loops)}, _SPECIAL_FLOATS),
         Analysis(
             "predicates on any bits",
-            {"law.h": law_h, "law.c": law_c, "driver.c": PREDICATES_DRIVER},
+            {"law.h": law_h, "law.c": law_c, "driver.c": predicates_driver(law_c)},
             (*_SPECIAL_FLOATS, "-eva-slevel", "10"),
         ),
     )

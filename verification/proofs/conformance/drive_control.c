@@ -15,6 +15,8 @@
 #include "words.h"
 
 #define EVENTS 60000u
+/* The least number of the law's periods that a watch period takes. */
+#define WATCHED (LAW_SAMPLE_PERIOD_US < PROTOCOL_WATCH_PERIOD_US ? PROTOCOL_WATCH_PERIOD_US / LAW_SAMPLE_PERIOD_US : 1u)
 #define FAR_COUNTS 1200 /* a reference that asks for full drive */
 /* Once a loop: see PROTOCOL_LOOPS. */
 #define SAME(angle, voltage, motor, VOLTAGE) .angle##_counts = counts,
@@ -59,10 +61,11 @@ static encoder_counts all_at(int32_t counts)
     return (encoder_counts){PROTOCOL_LOOPS(SAME)};
 }
 
-static void tick(bench *self, encoder_counts now, uint32_t passed)
+/* The law's periods have passed. */
+static void short_tick(bench *self, encoder_counts now, uint32_t passed)
 {
     uint8_t line[PROTOCOL_LINE_MAX];
-    self->now_us += 10000u * passed;
+    self->now_us += LAW_SAMPLE_PERIOD_US * passed;
     if (path_tick(&self->path, &now, passed) == PATH_STEP) {
         path_law(&self->path);
     }
@@ -70,6 +73,12 @@ static void tick(bench *self, encoder_counts now, uint32_t passed)
     (void)path_telemetry(&self->path, self->now_us, line);
     (void)supervisor_power_allowed(&self->path.supervisor);
     path_seal(&self->path);
+}
+
+/* Watch periods have passed. */
+static void tick(bench *self, encoder_counts now, uint32_t passed)
+{
+    short_tick(self, now, passed * WATCHED);
 }
 
 /* A frame of any version, type and length; the caller has filled its payload at frame + header. */
@@ -251,26 +260,30 @@ static void odd_ticks(bench *self)
     arm(self, PROTOCOL_MODE_FLYING, 0u);
     tick(self, all_at(0), 1u);
     tick(self, all_at(0), 0u);
+    short_tick(self, all_at(0), 1u);
     self->path.watched_us = PROTOCOL_WATCH_PERIOD_US;
     path_seal(&self->path);
     tick(self, all_at(0), 1u);
 }
 
-/* Motors at full drive either way, which not every table's law asks for. */
+/* Motors at full drive either way, their axes still and moving, and the ramp from there, which not every table's law asks for. */
 static void watch_alone(const motor_duties *applied)
 {
-    const encoder_counts still = all_at(1);
+    const encoder_counts still = all_at(1), moved = all_at(2);
+    const supervisor_state ramping = {.state = PROTOCOL_STATE_RAMPING, .ramp_start = *applied, .ramp_left = 1u};
     encoder_watch watch;
     encoder_watch_start(&watch, &still);
     (void)encoder_watch_believes(&watch, &still, applied, (int32_t)LAW_PWM_TICKS, PROTOCOL_ENCODER_STILL_PERIODS);
+    (void)encoder_watch_believes(&watch, &moved, applied, (int32_t)LAW_PWM_TICKS, 1u);
+    (void)supervisor_limit(&ramping, applied);
 }
 
-#define WATCHED(angle, voltage, motor, VOLTAGE) \
+#define WATCH_ALONE(angle, voltage, motor, VOLTAGE) \
     watch_alone(&(motor_duties){.motor##_ticks = (int32_t)LAW_PWM_TICKS}); \
     watch_alone(&(motor_duties){.motor##_ticks = -(int32_t)LAW_PWM_TICKS});
 static void watch_each(void)
 {
-    PROTOCOL_LOOPS(WATCHED)
+    PROTOCOL_LOOPS(WATCH_ALONE)
 }
 
 static void lose_host(bench *self, uint32_t late)

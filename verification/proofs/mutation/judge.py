@@ -12,7 +12,7 @@ from records.table import ControllerTable
 from verification.equality import BatchStepper, differing
 from verification.fixed_stimuli import EDGES, SPECIAL_WORDS, fixed_stimuli
 from verification.host_law import HostLaw
-from verification.stimuli import ARRIVALS, SPECIAL_BITS, Stimulus, standard_stimuli
+from verification.stimuli import ARRIVALS, JUMPS, SPECIAL_BITS, Stimulus, at_the_bound, standard_stimuli
 
 Bits = NDArray[Any]
 
@@ -22,6 +22,9 @@ _FAR = [[2**31 - 1, -(2**31)], [-(2**31), 2**31 - 1], [2**24 + 1, -(2**24) - 1]]
 COUNTS = np.array(
     [*([n, n] for n in range(-8192, 8193)), *_FAR], dtype=np.int32
 )  # two turns either way, and far beyond
+
+# Of either sign: where a duty's factor is odd, one of them is half a tick.
+POWERS = np.array([sign * 2**power for power in range(31) for sign in (1, -1)], dtype=np.int32).view(np.uint32)
 
 
 @dataclass(frozen=True)
@@ -40,16 +43,17 @@ class Behaviour:
 
 
 def stimuli_of(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[Stimulus]:
-    """The stimuli of the equality checks, `steps` steps of them, those from edges also lane by lane, one arrival alone, and one with
-    every word missing, in one lane and in two.
+    """The stimuli of the equality checks, `steps` steps of them, those from edges also lane by lane, one arrival and one lane of jumps
+    alone, one with every word missing, in one lane and in two, and in float32 the bound of what is plausible.
 
     A lane alone runs on single numbers, for which the twin has decisions of their own.
     """
     stimuli = _STIMULI[arithmetic](table, steps)
     alone = [lane for stimulus in stimuli if stimulus.name == EDGES for lane in _lane_by_lane(stimulus)]
-    alone += [next(_lane_by_lane(stimulus)) for stimulus in stimuli if stimulus.name == ARRIVALS]
+    alone += [next(_lane_by_lane(stimulus)) for stimulus in stimuli if stimulus.name in (ARRIVALS, JUMPS)]
     word = int(_SPECIAL[arithmetic][0])
-    return (*stimuli, *alone, *(_all_missing(table, word, lanes) for lanes in (1, 2)))
+    bound = [at_the_bound(table)] if arithmetic == "float32" else []
+    return (*stimuli, *alone, *bound, *(_all_missing(table, word, lanes) for lanes in (1, 2)))
 
 
 def _lane_by_lane(stimulus: Stimulus) -> Iterator[Stimulus]:
@@ -83,7 +87,7 @@ def whole_behaviour(law: HostLaw, stimuli: Sequence[Stimulus]) -> Behaviour:
     seen = stepped(law, stimuli)
     special, loops = _SPECIAL[law.arithmetic], seen.numbers[2].shape[-1]
     outputs = np.concatenate([array.reshape(-1, loops) for array in seen.numbers[2::3]])
-    words = (outputs, _of_loops(np.stack([special, special[::-1]], axis=-1), loops))
+    words = (outputs, *(_of_loops(np.stack([each, each[::-1]], axis=-1), loops) for each in (special, POWERS)))
     duties = [law.duties(np.ascontiguousarray(each)).view(np.uint32) for each in words]
     verdict = np.array([law.self_test()], dtype=np.uint32)
     angles = law.angles_from_counts(_of_loops(COUNTS, loops))

@@ -9,14 +9,15 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
+from codegen.fixed.constants import FixedLaw, FixedTerm
 from records.verification import ProofResult
 from verification.equality import BatchStepper
 from verification.host_law import HostLaw
-from verification.proofs.deviations import Finding, judge, load_deviations
+from verification.proofs.deviations import Finding, judge, load_deviations, said_of
 from verification.proofs.mutation.judge import stepped, stimuli_of
 from verification.proofs.mutation.law import judged_c
 from verification.proofs.mutation.mutants_python import mutated_twin, python_mutants
@@ -87,10 +88,25 @@ def table_score(subject: Subject) -> Score:
     twin = mutated_twin(subject.arithmetic, None)
     genuine = twin(subject.table)
     truths = _truths(genuine, subject)
-    others = [entry for entry in table_mutants(subject.table) if twin(entry[1]).law != genuine.law]
+    known = _numbers(genuine.law)
+    others = [entry for entry in table_mutants(subject.table) if _numbers(twin(entry[1]).law) != known]
     mutants = _sampled(others, subject)
     judged = [(title, is_table_noticed(twin(table), truths)) for title, table in mutants]
     return _score("table", judged, subject)
+
+
+def _numbers(law: Any) -> Any:
+    """What a law computes with: in fixed point a constant and its doublings are one number, in whatever halves it is multiplied."""
+    if not isinstance(law, FixedLaw):
+        return law
+    axes = [replace(axis, terms=tuple(_number(term) for term in axis.terms)) for axis in law.axes]
+    return replace(law, axes=tuple(axes))
+
+
+def _number(term: FixedTerm[Any]) -> Any:
+    if term.polynomial.powers:
+        return term
+    return term.coefficient, term.factor, term.sign, term.polynomial.constant * 2**term.doublings, term.excess
 
 
 def twin_score(subject: Subject) -> Score:
@@ -121,7 +137,7 @@ def _sampled(mutants: Sequence[T], subject: Subject) -> Sequence[T]:
 
 def _score(group: str, judged: Sequence[tuple[str, bool]], subject: Subject) -> Score:
     """The score of a group, equivalent survivors left out."""
-    known = load_deviations(EQUIVALENTS, subject.arithmetic)
+    known = load_deviations(EQUIVALENTS, subject.arithmetic, said_of(subject.table, subject.arithmetic))
     silent = [Finding(re.split(r"[:.]", title)[0], 0, group, title) for title, noticed in judged if not noticed]
     survivors = tuple(finding.text for finding in judge(silent, known).unjustified)
     return Score(group, len(judged) - len(silent), survivors, len(silent) - len(survivors))

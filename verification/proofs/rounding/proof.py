@@ -29,17 +29,17 @@ _ENCLOSURE = re.compile(r" in \[([^ ,\]]+)[^,\]]*?(?:\{[^}]*\})?, ([^ ,\]]+)")
 
 
 def prove(subject: Subject) -> ProofResult:
-    """Both bounds in volt; fails where Gappa finds none."""
+    """Both bounds; fails where Gappa finds none."""
     by_gappa, by_balls = _BOUNDS[subject.arithmetic]
     try:
         gappa = by_gappa(subject.table, subject.motion)
     except ValueError as error:
         return ProofResult(NAME, "failed", str(error))
     balls = by_balls(subject.table, subject.motion)
-    figures = {f"{name}_V": bound for name, bound in gappa.volts.items()}
-    figures |= {f"balls_{name}_V": bound for name, bound in balls.volts.items()}
-    against = " and ".join(f"{1e3 * bound:.2f}" for bound in balls.volts.values())
-    told = f"{gappa.told} by Gappa, {against} mV by ball arithmetic; tighter: {_tighter(gappa, balls)}"
+    figures = {gappa.column(name): bound for name, bound in gappa.volts.items()}
+    figures |= {f"balls_{balls.column(name)}": bound for name, bound in balls.volts.items()}
+    against = " and ".join(map(balls.size, balls.volts))
+    told = f"{gappa.told} by Gappa, {against} by ball arithmetic; tighter: {_tighter(gappa, balls)}"
     return ProofResult(NAME, "proved", told, figures=figures)
 
 
@@ -80,7 +80,8 @@ def _limited_bound(table: ControllerTable, outputs: Sequence[Pair], step_V: floa
 
 def tighter_bound(bound: RoundingBound, result: ProofResult) -> RoundingBound:
     """`bound`, or per output what Gappa proved where that is smaller; the method names both then."""
-    smaller = {name: min(known, result.figures.get(f"{name}_V", math.inf)) for name, known in bound.volts.items()}
+    proved = {name: result.figures.get(bound.column(name), math.inf) for name in bound.volts}
+    smaller = {name: min(known, proved[name]) for name, known in bound.volts.items()}
     if result.outcome != "proved" or smaller == bound.volts:
         return bound
     return RoundingBound(smaller, f"the smaller of: Gappa script; {bound.method}", bound.units)

@@ -230,7 +230,7 @@ def _outputs(table: ControllerTable, law: FixedLaw[int]) -> Iterator[Question]:
     formats = law_formats(table)
     for axis in law.axes:
         low, high = _word(axis.u_min_V), _word(axis.u_max_V)
-        claim = f"the {axis.name} voltage is within its limits whatever the word before them"
+        claim = f"the input of the {axis.name} is within its limits whatever the word before them"
         fit = f"(and (fits a {low}) (fits {high} (greatest a {low})))"
         yield Question(claim, _refute(f"(between (clamp a {low} {high}) {low} {high})", fit))
     for scale_V in full_scales_V(table.loops):

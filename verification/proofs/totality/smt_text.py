@@ -13,6 +13,7 @@ import numpy as np
 
 from codegen.law_constants import AxisConstants, law_constants
 from codegen.law_frame import polynomial, schedule_ranges
+from codegen.law_terms import array_name
 from codegen.numbers import float32_bits
 from codegen.twin import PWM_TICKS
 from records.loops import full_scales_V
@@ -70,10 +71,8 @@ def questions(table: ControllerTable, law_c: str) -> Iterator[Question]:
 def coefficient_ranges(table: ControllerTable, law_c: str) -> Iterator[Question]:
     """Each polynomial stays within the range in its comment, to the digits shown, for every float32 of its argument's range."""
     stated = {name: (float(low), float(high)) for name, low, high in _COMMENTED_RANGE.findall(law_c)}
-    psi_rad, reference_rad = schedule_ranges(table)
-    for name, coefficients in _polynomials(table):
+    for name, coefficients, over_rad in _polynomials(table):
         low, high = stated[name]
-        over_rad = reference_rad if name.endswith("u_ff_V") else psi_rad
         value = polynomial(coefficients, SmtNumber("(float a)"), SmtNumber(_term(0.0))).term
         limits = (_bits(low - _half_unit(low)), _bits(high + _half_unit(high)))
         yield Question(
@@ -111,12 +110,12 @@ def _predicates() -> Iterator[Question]:
 
 def _saturation(name: str, axis: AxisConstants[float]) -> Question:
     low, high, safe = (_bits(limit) for limit in (axis.u_min_V, axis.u_max_V, axis.u_safe_V))
-    claim = f"the {name} voltage is within its limits whatever the 32 bits before them"
+    claim = f"the input of the {name} is within its limits whatever the 32 bits before them"
     return Question(claim, _refute(f"(within (saturate a {low} {high} {safe}) {low} {high})"))
 
 
 def _duty(full_scale_V: float) -> Question:
-    """What law.c makes of voltages with this full scale, for any bits and any safe voltage within full scale."""
+    """What law.c makes of inputs with this full scale, for any bits and any safe voltage within full scale."""
     low, high = _bits(-full_scale_V), _bits(full_scale_V)
     product = f"(fp.mul RNE (float (saturate a {low} {high} b)) {_term(2.0 * PWM_TICKS / full_scale_V)})"
     one, two = "#x00000001", "#x00000002"
@@ -132,18 +131,17 @@ def _refute(claim: str, *given: str) -> str:
     return PREAMBLE + "".join(f"(assert {condition})\n" for condition in given) + f"(assert (not {claim}))\n"
 
 
-def _polynomials(table: ControllerTable) -> Iterator[tuple[str, tuple[SmtNumber, ...]]]:
-    """The arrays of law.c by name, as their float32 terms."""
+def _polynomials(table: ControllerTable) -> Iterator[tuple[str, tuple[SmtNumber, ...], tuple[float, float]]]:
+    """The arrays of law.c by name, as their float32 terms, and the range of what they are polynomials in."""
+    psi_rad, reference_rad = schedule_ranges(table)
     law = law_constants(table, lambda value: SmtNumber(_term(value)))
     for loop, numbers in zip(table.loops, law.axes, strict=True):
-        axis = loop.axis
-        groups = (("q", numbers.q_V_rad, "_V_rad"), ("p", numbers.p, ""), ("a", numbers.a, ""))
-        for letter, polynomials, suffix in groups:
+        for letter, polynomials in (("q", numbers.q_V_rad), ("p", numbers.p), ("a", numbers.a)):
             for index, coefficients in enumerate(polynomials):
                 if coefficients:
-                    yield f"{axis}_{letter}_{index}{suffix}", coefficients
+                    yield array_name(loop, f"{letter}_{index}"), coefficients, psi_rad
         if numbers.feedforward_V:
-            yield f"{axis}_u_ff_V", numbers.feedforward_V
+            yield array_name(loop, "u_ff_V"), numbers.feedforward_V, reference_rad
 
 
 def _half_unit(shown: float) -> float:
