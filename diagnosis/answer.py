@@ -54,6 +54,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
             for fitted, probability in zip(weighed.fitted, weighed.probabilities, strict=True)
         ),
         unknown=_unknown(found, seen.detection.by_form, weighed, blamed[0] if blamed else None),
+        partly=weighed.partly,
         found=judged.chosen.effects,
         shrinkage=None if judged.holdout is None else judged.holdout.shrinkage(predicted),
         next_experiment=next_experiment(case, weighed),

@@ -358,12 +358,6 @@ LEAST_PREFERRED = Limit(0.02, "probability", "a less probable name is not asked:
 FARTHEST_LOGIT = Limit(
     6.0, "logits", "surer weights are told to the learned law as this: evidence of dense readings is too sure"
 )
-FARTHEST_OFF = Limit(
-    3.0,
-    "ln of what sensors leave",
-    "predictions that stay further off are told to the learned law as this: what is read to nanometres feels any draught",
-    "EMPS, whose friction is right and leaves 11",
-)
 LITTLE_LEFT = Limit(
     0.1,
     "share of the gap's evidence",

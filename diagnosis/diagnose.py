@@ -270,17 +270,15 @@ def _ranked(
 def _favoured(
     seen: Seen, holdout: Holdout | None, weighed: Weighed, gained: float, left: float
 ) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
-    """What was weighed, with what the hold-out says of it, or without one the logs themselves of how far off it leaves them, as
-    probabilities; `gained` and `left` are nats, see `overruled`."""
+    """What was weighed, with what the hold-out says of it, as probabilities; `gained` and `left` are nats, see `overruled`."""
     if not weighed.fitted:
         return weighed, (), ()
     if holdout is None:
-        own = Holdout(seen.case, ["" for _ in seen.case.flights], (), seen.retuned)
-        weighed, law = calibrated(weighed, None, own.off(weighed.fitted[0]))
+        weighed, law = calibrated(weighed, None)
         return weighed, (), law
     weighed, over = overruled(holdout, weighed, gained, left)
     told, notes, rules = asked(holdout, weighed.fitted[0])
-    weighed, law = calibrated(weighed, favour(told), holdout.off(weighed.fitted[0]))
+    weighed, law = calibrated(weighed, favour(told))
     return weighed, notes, (*over, *rules, *law)
 
 

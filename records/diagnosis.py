@@ -14,7 +14,7 @@ from records.text.reading import read_json
 
 SCHEMA = "diagnosis/1"
 VERDICTS = ("gap", "no gap", "cannot tell")
-FURTHER = ("error_responses", "verdict_reason", "decisions", "note_records")  # keys that a file may lack
+FURTHER = ("error_responses", "partly", "verdict_reason", "decisions", "note_records")  # keys that a file may lack
 QUALITY = "quality"  # a key beside the record: the colour that pages show, made from it
 SHARE_TOLERANCE = 1e-6  # how far shares may sum from 1
 T = TypeVar("T")
@@ -174,7 +174,9 @@ class Shrinkage:
 class Diagnosis:
     """All of diagnosis.json; `firmware` is None where no log names a table, `shrinkage` where there is no hold-out log.
 
-    `verdict_reason` names the exit of the engine that was taken, `decisions` every rule that had a say on the way there, in order.
+    `partly` is the probability that of the first hypothesis a part is right and another effect missing: with those of all hypotheses, of
+    the unknown effect and of other parameters alone it makes 1. `verdict_reason` names the exit of the engine that was taken, `decisions`
+    every rule that had a say on the way there, in order.
     `notes` are sentences, and `note_records` what each was made from, in the same order.
     """
 
@@ -188,6 +190,7 @@ class Diagnosis:
     firmware: Firmware | None = None
     effects: tuple[Hypothesis, ...] = ()
     unknown: Unknown = Unknown(0.0)
+    partly: float = 0.0
     found: tuple[str, ...] = ()
     shrinkage: Shrinkage | None = None
     next_experiment: Mapping[str, Any] | None = None
@@ -236,6 +239,7 @@ def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
         if content["next_experiment"] is None
         else checks.table(content["next_experiment"], f"{where}: next_experiment"),
         notes=_texts(content["notes"], f"{where}: notes"),
+        partly=checks.number(content.get("partly", 0.0), f"{where}: partly"),
         verdict_reason=_or_none(checks.text)(content.get("verdict_reason"), f"{where}: verdict_reason"),
         decisions=_list(Decision, content, "decisions", where),
         note_records=_list(Note, content, "note_records", where),
@@ -250,7 +254,7 @@ def _check(diagnosis: Diagnosis, where: str) -> None:
         expected = " or ".join(map(repr, VERDICTS))
         raise BadInput("verdict", where, repr(diagnosis.verdict), expected, "give one of these")
     ranked = [hypothesis.probability for hypothesis in diagnosis.effects]
-    for p in (*ranked, diagnosis.unknown.probability, diagnosis.false_alarm_probability or 0.0):
+    for p in (*ranked, diagnosis.partly, diagnosis.unknown.probability, diagnosis.false_alarm_probability or 0.0):
         if not 0.0 <= p <= 1.0:
             raise BadInput("probability", where, repr(p), "a number from 0 to 1", "check how it was computed")
     for name in ("places", "when", "regions", "bands"):

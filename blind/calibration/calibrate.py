@@ -33,7 +33,8 @@ class Quality:
 @dataclass(frozen=True)
 class Calibration:
     """A law and its worth: on what it was fitted to (`inside`), on each family by a law of the others (`by_family`, together `outside`),
-    and of what the answers stated themselves (None: not on record). `outside` also chose `decay`, one of six, and is kinder for it."""
+    and of what the answers stated themselves (None: not on record). `outside` also chose `decay`, one of six, and is kinder for it.
+    `partly`: how often a wrong name is right in part, of one effect and of several."""
 
     families: tuple[Family, ...]
     decay: float
@@ -42,6 +43,7 @@ class Calibration:
     outside: Quality
     stated: Quality | None
     by_family: tuple[Quality, ...]
+    partly: tuple[float, float]
 
 
 def calibrate(families: Sequence[Family]) -> Calibration:
@@ -59,7 +61,14 @@ def calibrate(families: Sequence[Family]) -> Calibration:
         outside=quality(np.concatenate(left_out), examples),
         stated=quality(np.array(said), examples) if len(said) == len(examples) else None,
         by_family=tuple(quality(p, one.examples) for p, one in zip(left_out, families, strict=True)),
+        partly=(partly(examples, several=False), partly(examples, several=True)),
     )
+
+
+def partly(examples: Sequence[Example], several: bool) -> float:
+    """How often a wrong name of one effect, or of several, is right in part: Laplace's rule of succession, (k + 1) / (n + 2)."""
+    wrong = [entry for entry in examples if entry.several is several and not entry.right]
+    return (sum(entry.partly for entry in wrong) + 1) / (len(wrong) + 2)
 
 
 def quality(p: Array, examples: Sequence[Example]) -> Quality:

@@ -10,7 +10,7 @@ from typing import Any
 
 from blind.cases.make import salt_of
 from blind.cases.sealed import TRUTH_FILE, open_seal
-from blind.scoring.judge import means
+from blind.scoring.judge import means, touches
 from blind.scoring.results import names_of
 from records.errors import BadInput
 
@@ -22,12 +22,14 @@ STATED = "comes_true"  # the rule that recorded the probability
 @dataclass(frozen=True)
 class Example:
     """One answer: its features, the share that its first name had of all names, whether that name is right, the probability stated of it
-    (None: not on record)."""
+    (None: not on record); whether the name is of several effects, and whether some effect of it is right."""
 
     features: tuple[float, ...]
     share: float
     right: bool
     stated: float | None
+    several: bool = False
+    partly: bool = False
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,9 @@ def family(name: str, folders: Sequence[tuple[Path, Path]], features: Sequence[s
             told = _told(answers / case / "diagnosis.json", features)
             if told is not None:
                 of, values, share, stated = told
-                found.append(Example(values, share, means(names_of(of), truth), stated))
+                names = names_of(of)
+                parts = (len(names) > 1, touches(names, truth))
+                found.append(Example(values, share, means(names, truth), stated, *parts))
     if not found:
         where = ", ".join(str(answers) for _, answers in folders)
         got = f"none in the answers to {cases} cases"

@@ -17,6 +17,7 @@ def _content(found: Calibration, features: Sequence[str], commit: str) -> dict[s
     return {
         "intercept": found.law.intercept,
         "coefficients": dict(zip(features, found.law.coefficients, strict=True)),
+        "partly": {"single": found.partly[0], "joint": found.partly[1]},
         "commit": commit,
         "families": {
             one.name: {"seeds": list(one.seeds), "cases": one.cases, **_plain(left_out)} for one, left_out in families
@@ -45,7 +46,11 @@ HEADING = ("probabilities of", "answers", "right", "log loss", "calibration erro
 def law_told(found: Calibration, features: Sequence[str]) -> str:
     """The law in one line."""
     terms = [f"{value:+.3f} {name}" for value, name in zip(found.law.coefficients, features, strict=True)]
-    return f"log odds of being right = {found.law.intercept:.3f} {' '.join(terms)}; weight decay {found.decay:g}"
+    single, joint = found.partly
+    return (
+        f"log odds of being right = {found.law.intercept:.3f} {' '.join(terms)}; weight decay {found.decay:g}; a wrong name is right in "
+        f"part {single:.2f} of one effect, {joint:.2f} of several"
+    )
 
 
 def rows(found: Calibration) -> list[tuple[str, ...]]:

@@ -116,6 +116,11 @@ def means(names: Names, truth: Truth) -> bool:
     )
 
 
+def touches(names: Names, truth: Truth) -> bool:
+    """Whether some name of a set says a true effect."""
+    return any(_fits(name, effect) for name in names for effect in truth.effects)
+
+
 def _first_place(answer: Answer) -> str:
     return answer.places[0] if answer.places else answer.unknown_place
 

@@ -13,69 +13,73 @@ from diagnosis.decide.weighing import Weighed, named
 from diagnosis.decisions import held_against
 from records.reasons import Decision
 
-FEATURES = ("sure", "favour", "silent", "off")  # in the order of the law's coefficients
+FEATURES = ("sure", "favour", "silent", "further")  # in the order of the law's coefficients
 
 
 @dataclass(frozen=True)
 class Features:
     """What the law is told: the logit of the weight of all names together, what the hold-out says for the first (-1 to 1), whether there is
-    none, and ln of how far off the first leaves predictions, in units of what the sensors leave."""
+    none, and how many effects the first has beside one."""
 
     sure: float
     favour: float
     silent: float
-    off: float
+    further: float
 
     @property
     def vector(self) -> tuple[float, ...]:
         """The features in the order of FEATURES."""
-        return (self.sure, self.favour, self.silent, self.off)
+        return (self.sure, self.favour, self.silent, self.further)
 
 
 @dataclass(frozen=True)
 class Law:
-    """log odds that one of the names is right = intercept + coefficients . features."""
+    """log odds that one of the names is right = intercept + coefficients . features; and how often, where none was, a part of the first
+    was, of a single effect and of several."""
 
     intercept: float
     coefficients: tuple[float, ...]
+    partly: tuple[float, float] = (0.0, 0.0)
 
     def probability(self, features: Features) -> float:
         """The chance that one of the names is right."""
         return float(1.0 / (1.0 + np.exp(-self.intercept - np.dot(self.coefficients, features.vector))))
+
+    def part(self, features: Features) -> float:
+        """The chance that none of the names is right, but a part of the first is."""
+        return (1.0 - self.probability(features)) * self.partly[features.further > 0.0]
 
 
 @cache
 def learned() -> Law:
     """The law of the file beside this one."""
     kept = json.loads(files("diagnosis.decide").joinpath("calibration.json").read_text(encoding="utf-8"))
-    return Law(kept["intercept"], tuple(kept["coefficients"][name] for name in FEATURES))
+    coefficients = tuple(kept["coefficients"][name] for name in FEATURES)
+    return Law(kept["intercept"], coefficients, (kept["partly"]["single"], kept["partly"]["joint"]))
 
 
-def features_of(weighed: Weighed, favour: float | None, off: float) -> Features:
-    """What the law is told; `favour` is None without a hold-out, `off` as in holdout.py."""
+def features_of(weighed: Weighed, favour: float | None) -> Features:
+    """What the law is told; `favour` is None without a hold-out."""
     p = sum(weighed.probabilities)
-    sure = float(
-        np.clip(
-            np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12)), -decisions.FARTHEST_LOGIT, decisions.FARTHEST_LOGIT
-        )
-    )
-    return Features(sure, favour or 0.0, float(favour is None), min(off, decisions.FARTHEST_OFF))
+    logit = np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12))
+    sure = float(np.clip(logit, -decisions.FARTHEST_LOGIT, decisions.FARTHEST_LOGIT))
+    further = float(len(weighed.fitted[0].effects) - 1)
+    return Features(sure, favour or 0.0, float(favour is None), further)
 
 
-def calibrated(
-    weighed: Weighed, favour: float | None, off: float, law: Law | None = None
-) -> tuple[Weighed, tuple[Decision, ...]]:
-    """The names together as probable as such names came true, each with its share of that, and all else with its share of the rest. The
-    records are the law's features and the first name's share."""
+def calibrated(weighed: Weighed, favour: float | None, law: Law | None = None) -> tuple[Weighed, tuple[Decision, ...]]:
+    """The names together as probable as such names came true, each with its share of that; a part of the first as probable as such parts
+    were; and all else with its share of the rest. The records are the law's features and the first name's share."""
     names = sum(weighed.probabilities)
     if not 0.0 < names < 1.0:  # nothing to share, or nothing beside the names
         return weighed, ()
-    told, of = features_of(weighed, favour, off), named(weighed)
-    known = (learned() if law is None else law).probability(told)
-    rest = (1.0 - known) / (1.0 - names)
+    told, of, learnt = features_of(weighed, favour), named(weighed), learned() if law is None else law
+    known, partly = learnt.probability(told), learnt.part(told)
+    rest = (1.0 - known - partly) / (1.0 - names)
     found = replace(
         weighed,
         probabilities=tuple(known * value / names for value in weighed.probabilities),
+        partly=partly,
         unknown=rest * weighed.unknown,
         retune=rest * weighed.retune,
     )
@@ -84,6 +88,7 @@ def calibrated(
     return found, (
         *_records(of, values),
         held_against("comes_true", of, known * share, found.unknown, "probability", _outcome(found)),
+        held_against("partly_true", of, partly, found.unknown, "probability", "counts"),
     )
 
 

@@ -98,12 +98,6 @@ class Holdout:
         """How far the gap shrinks in these predictions."""
         return shrinkage(self.case, predicted, self.tables)
 
-    def off(self, fitted: FittedHypothesis) -> float:
-        """ln of how many times as far off as its sensor leaves the predictions of the worst output are over a second, in rms."""
-        told = shrinkage(self.case, self.predicted(fitted))
-        ratios = [told.rms_after[name] / floor for name, floor in told.rms_floor.items() if floor > 0.0]
-        return float(np.log(max(ratios, default=1.0)))
-
     def _read(self, hypothesis: Hypothesis) -> list[Array]:
         if hypothesis not in self.read:
             self.read[hypothesis] = [predictions(self.case, flight, hypothesis) for flight in self.case.flights]

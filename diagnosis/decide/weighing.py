@@ -22,7 +22,8 @@ RANKED = 12
 @dataclass(frozen=True, eq=False)
 class Weighed:
     """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; that of
-    parameters beyond their spread; and the scale in nats on which hypotheses are compared."""
+    parameters beyond their spread; the scale in nats on which hypotheses are compared; and the probability that of the first some effects
+    are right and others not."""
 
     fitted: tuple[FittedHypothesis, ...]
     probabilities: tuple[float, ...]
@@ -30,11 +31,12 @@ class Weighed:
     retune: float
     scale: float
     decisions: tuple[Decision, ...] = ()
+    partly: float = 0.0
 
     @property
     def nameless(self) -> bool:
         """Whether nothing that has a name is as probable as an unknown effect."""
-        return self.unknown > max(self.retune, *self.probabilities, 0.0)
+        return self.unknown > max(self.retune, self.partly + max(self.probabilities, default=0.0))
 
     def with_names(self, factors: Array) -> "Weighed":
         """The same with the probability of each name times its factor (names,), all names together as probable as before."""
@@ -49,7 +51,7 @@ class Weighed:
 
     def with_unknown(self, share: float) -> "Weighed":
         """The same with an unknown effect of probability `share`, all else in its old proportions; itself where nothing else is left."""
-        known = sum(self.probabilities) + self.retune
+        known = sum(self.probabilities) + self.partly + self.retune
         if known <= 0.0:
             return self
         factor = (1.0 - share) / known
@@ -57,6 +59,7 @@ class Weighed:
             self,
             probabilities=tuple(factor * value for value in self.probabilities),
             retune=factor * self.retune,
+            partly=factor * self.partly,
             unknown=share,
         )
 
@@ -174,9 +177,11 @@ def likeliest(
 
 
 def first_share(case: Case, weighed: Weighed) -> float:
-    """How probable the first name is together with what data can hardly tell from it: either of them says what is missing."""
+    """How probable it is that the first name, or what data can hardly tell from it, says what is missing or a part of it."""
     told = zip(weighed.fitted, weighed.probabilities, strict=True)
-    return sum(p for entry, p in told if entry is weighed.fitted[0] or is_twin(case, entry, weighed.fitted[0]))
+    return weighed.partly + sum(
+        p for entry, p in told if entry is weighed.fitted[0] or is_twin(case, entry, weighed.fitted[0])
+    )
 
 
 def named(weighed: Weighed) -> str:

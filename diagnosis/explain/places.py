@@ -19,6 +19,8 @@ def place_shares(
     for fitted, probability in zip(weighed.fitted, weighed.probabilities, strict=True):
         for place, share in _parts(search, fitted).items():
             found[place] += probability * share
+    for place, share in _parts(search, weighed.fitted[0]).items() if weighed.fitted else ():
+        found[place] += weighed.partly * share
     if unknown_place is not None:
         found[unknown_place] += weighed.unknown
     for place in retuned_places:

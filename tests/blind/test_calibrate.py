@@ -10,7 +10,7 @@ import pytest
 from scipy.special import expit
 
 from blind import calibrate, family
-from blind.calibration.calibrate import DECAYS, quality
+from blind.calibration.calibrate import DECAYS, partly, quality
 from blind.calibration.examples import Example, Family
 from blind.calibration.logistic import fit
 from blind.cases.make import salt_of
@@ -73,6 +73,17 @@ def test_few_answers_have_a_finite_law_all_right_or_told_apart_without_error_and
     apart = [Example((float(place), 0.0, 1.0, 0.0), 1.0, place > 1, None) for place in range(4)]
     loose, tight = fit(apart, DECAYS[0]), fit(apart, DECAYS[-1])
     assert 10.0 > loose.coefficients[0] > tight.coefficients[0] > 0.0
+
+
+def test_a_wrong_name_is_right_in_part_as_often_as_such_were() -> None:
+    """Truth: of 8 wrong names of one effect 1 is right in part, of 3 of several all are: (1 + 1) / (8 + 2) and (3 + 1) / (3 + 2)."""
+
+    def told(several: bool, parts: list[bool]) -> list[Example]:
+        return [Example((0.0,) * 4, 1.0, False, None, several, part) for part in parts]
+
+    right = [Example((0.0,) * 4, 1.0, True, None, several, True) for several in (False, True) for _ in range(5)]
+    examples = [*right, *told(False, [True, *[False] * 7]), *told(True, [True] * 3)]
+    assert (partly(examples, several=False), partly(examples, several=True)) == pytest.approx((0.2, 0.8))
 
 
 def test_honest_answers_have_an_error_that_falls_as_the_root_of_their_number_and_a_seed_tells_it() -> None:

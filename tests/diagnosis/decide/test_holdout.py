@@ -132,7 +132,7 @@ def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     detection = Detection(1e-9, Tail(5.0, 1.0), 30.0, False, FormScores((), empty, np.zeros(0)))
     seen = Seen(case, None, plain, object(), (), None, detection)  # type: ignore[arg-type]
     told, notes, _ = asked(other, found)
-    weighed, _ = calibrated(Weighed((found,), (0.9,), 0.1, 0.0, 10.0), favour(told), other.off(found))
+    weighed, _ = calibrated(Weighed((found,), (0.9,), 0.1, 0.0, 10.0), favour(told))
     assert weighed.nameless
     for p, sure in ((1e-9, True), (1e-4, False)):
         after, stands = borne_out(replace(seen, detection=replace(detection, p=p)), weighed)

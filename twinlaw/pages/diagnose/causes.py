@@ -38,6 +38,8 @@ def causes_section(
         ranked.append((retuned, [("other parameters alone", "", percent(retuned), own, "")]))
     ranked.sort(key=lambda entry: -entry[0])
     rows = [row for _, lines in ranked for row in lines]
+    if diagnosis.partly > SELDOM:
+        rows.append(("a part of the first, and another effect", "", percent(diagnosis.partly), "", ""))
     class_ = class_in_words(unknown.class_ or "")
     rows.append(("none of the library", class_, percent(unknown.probability), "", ""))
     return Section(

@@ -67,7 +67,8 @@ def moved_in_words(moved: Sequence[Moved]) -> str:
 
 def parameters_alone(diagnosis: Diagnosis) -> float:
     """The probability that other parameters explain the gap and nothing is missing."""
-    return max(0.0, 1.0 - diagnosis.unknown.probability - sum(h.probability for h in diagnosis.effects))
+    named = diagnosis.partly + sum(h.probability for h in diagnosis.effects)
+    return max(0.0, 1.0 - diagnosis.unknown.probability - named)
 
 
 def lowered(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:

@@ -79,7 +79,12 @@ def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, flo
     )
     ranked.sort(key=lambda entry: -entry[0])
     class_ = class_in_words(diagnosis.unknown.class_ or "")
-    return [*(row for _, lines in ranked for row in lines), ("unknown", f"{diagnosis.unknown.probability:.3f}", class_)]
+    part = ("a part of the first", f"{diagnosis.partly:.3f}", "")
+    return [
+        *(row for _, lines in ranked for row in lines),
+        part,
+        ("unknown", f"{diagnosis.unknown.probability:.3f}", class_),
+    ]
 
 
 def _retuned(diagnosis: Diagnosis, moved: Sequence[Moved]) -> Iterator[str]:

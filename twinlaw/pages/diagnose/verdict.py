@@ -77,9 +77,9 @@ def _nothing_added(diagnosis: Diagnosis) -> str:
     if moved and retuned > max(unknown.probability, first.probability if first else 0.0):
         return f"The rig has other parameters than the plant file states, and nothing else is missing: {listed(moved)}."
     where = f" in {words(unknown.place)}" if unknown.place else ""
-    if first is not None and first.probability > unknown.probability:
+    if first is not None and first.probability + diagnosis.partly > unknown.probability:
         return (
             f"The rig does something{where} that the plant file lacks, most likely {words(first.effect)} "
-            f"({percent(first.probability)}); but that predicts the hold-out logs worse, so it was not added."
+            f"({percent(first.probability)}); but with that the hold-out logs are not predicted better, so it was not added."
         )
     return f"The rig does something{where} that the plant file lacks, and no effect of the library can be named for it."
