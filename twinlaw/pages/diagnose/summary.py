@@ -79,12 +79,9 @@ def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, flo
     )
     ranked.sort(key=lambda entry: -entry[0])
     class_ = class_in_words(diagnosis.unknown.class_ or "")
-    part = ("a part of the first", f"{diagnosis.partly:.3f}", "")
-    return [
-        *(row for _, lines in ranked for row in lines),
-        part,
-        ("unknown", f"{diagnosis.unknown.probability:.3f}", class_),
-    ]
+    part = [("a part of the first, and another", f"{diagnosis.partly:.3f}", "")] if diagnosis.partly else []
+    unknown = ("unknown", f"{diagnosis.unknown.probability:.3f}", class_)
+    return [*(row for _, lines in ranked for row in lines), *part, unknown]
 
 
 def _retuned(diagnosis: Diagnosis, moved: Sequence[Moved]) -> Iterator[str]:
