@@ -340,13 +340,13 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
 
 
 def borne_out(seen: Seen, weighed: Weighed) -> tuple[Seen, bool]:
-    """Whether a gap stands: a small one that is not sure does not whose explanations do not hold, be it on the hold-out. Its chance stays
-    what it is."""
+    """Whether a gap stands: a small one that is not sure does not whose explanations do not hold, be it on the hold-out; a name that may
+    be right in part is none for it. Its chance stays what it is."""
     unsure = seen.detection.largest <= decisions.PLAIN_TO_SEE and seen.detection.p > decisions.SURE_GAP
-    stands = not (unsure and weighed.nameless)
-    named = max(weighed.retune, *weighed.probabilities, 0.0)
+    named, against = max(weighed.retune, *weighed.probabilities, 0.0), weighed.unknown + weighed.partly
+    stands = not (unsure and against > named)
     outcome = "no gap: nothing that was found holds" if not stands else "stands"
-    rule = held_against("borne_out", "what explains it", named, weighed.unknown, "probability", outcome)
+    rule = held_against("borne_out", "what explains it", named, against, "probability", outcome)
     return (seen.because(rule) if unsure else seen), stands
 
 

@@ -127,10 +127,16 @@ def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, sure:
     assert (confirmed_by(seen(largest), found, None).detection.p <= 0.01) is gap
 
 
-@pytest.mark.parametrize(("largest", "unknown", "gap"), [(20.0, 0.95, False), (20.0, 0.3, True), (200.0, 0.95, True)])
-def test_what_explains_a_small_gap_must_be_likelier_than_nothing(largest: float, unknown: float, gap: bool) -> None:
-    # Where the hold-out refutes the one explanation that there was, as with unknown = 0.95, nothing explains the gap.
-    weighed = Weighed((fitted(12.0),), (1.0 - unknown,), unknown, 0.0, 10.0)
+@pytest.mark.parametrize(
+    ("largest", "unknown", "partly", "gap"),
+    [(20.0, 0.95, 0.0, False), (20.0, 0.3, 0.0, True), (20.0, 0.1, 0.5, False), (200.0, 0.95, 0.0, True)],
+)
+def test_what_explains_a_small_gap_must_be_likelier_than_nothing(
+    largest: float, unknown: float, partly: float, gap: bool
+) -> None:
+    # Where the hold-out refutes the one explanation that there was, as with unknown = 0.95, nothing explains the gap; nor does one that
+    # is rather right in part.
+    weighed = Weighed((fitted(12.0),), (1.0 - unknown - partly,), unknown, 0.0, 10.0, partly=partly)
     after, stands = borne_out(seen(largest), weighed)
     assert stands is gap
     assert after.detection.p == seen(largest).detection.p  # whatever the verdict, the chance stays what it is
