@@ -18,8 +18,8 @@ FEATURES = ("sure", "favour", "silent", "further")  # in the order of the law's 
 
 @dataclass(frozen=True)
 class Features:
-    """What the law is told: the logit of the weight of all names together, what the hold-out says for the first (-1 to 1), whether there is
-    none, and how many effects the first has beside one."""
+    """What the law is told: the logit of the weight of all that explains the gap, what the hold-out says for the first name (-1 to 1),
+    whether there is none, and how many effects that has beside one."""
 
     sure: float
     favour: float
@@ -34,8 +34,8 @@ class Features:
 
 @dataclass(frozen=True)
 class Law:
-    """log odds that one of the names is right = intercept + coefficients . features; and how often, where none was, a part of the first
-    was, of a single effect and of several."""
+    """log odds that one of the explanations is right = intercept + coefficients . features; and how often, where none was, a part of the
+    first name was, of a single effect and of several."""
 
     intercept: float
     coefficients: tuple[float, ...]
@@ -60,30 +60,34 @@ def learned() -> Law:
 
 def features_of(weighed: Weighed, favour: float | None) -> Features:
     """What the law is told; `favour` is None without a hold-out."""
-    p = sum(weighed.probabilities)
+    p = _listed(weighed)
     logit = np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12))
     sure = float(np.clip(logit, -decisions.FARTHEST_LOGIT, decisions.FARTHEST_LOGIT))
     further = float(len(weighed.fitted[0].effects) - 1)
     return Features(sure, favour or 0.0, float(favour is None), further)
 
 
+def _listed(weighed: Weighed) -> float:
+    """The weight of all that explains the gap: names, and other parameters alone."""
+    return sum(weighed.probabilities) + weighed.retune
+
+
 def calibrated(weighed: Weighed, favour: float | None, law: Law | None = None) -> tuple[Weighed, tuple[Decision, ...]]:
-    """The names together as probable as such names came true, each with its share of that; a part of the first as probable as such parts
-    were; and all else with its share of the rest. The records are the law's features and the first name's share."""
-    names = sum(weighed.probabilities)
-    if not 0.0 < names < 1.0:  # nothing to share, or nothing beside the names
+    """What explains the gap together as probable as such explanations came true, each with its share of that; a part of the first as
+    probable as such parts were; the rest is an unknown effect's. The records are the law's features and the first name's share."""
+    listed = _listed(weighed)
+    if not 0.0 < listed < 1.0 or not sum(weighed.probabilities):  # nothing to share, or nothing beside it
         return weighed, ()
     told, of, learnt = features_of(weighed, favour), named(weighed), learned() if law is None else law
     known, partly = learnt.probability(told), learnt.part(told)
-    rest = (1.0 - known - partly) / (1.0 - names)
     found = replace(
         weighed,
-        probabilities=tuple(known * value / names for value in weighed.probabilities),
+        probabilities=tuple(known * value / listed for value in weighed.probabilities),
         partly=partly,
-        unknown=rest * weighed.unknown,
-        retune=rest * weighed.retune,
+        unknown=1.0 - known - partly,
+        retune=known * weighed.retune / listed,
     )
-    share = weighed.probabilities[0] / names
+    share = weighed.probabilities[0] / listed
     values = {**dict(zip(FEATURES, told.vector, strict=True)), "share": share}
     return found, (
         *_records(of, values),

@@ -18,17 +18,16 @@ def weighed(first: float, second: float, unknown: float) -> Weighed:
     return Weighed(names, (first, second), unknown, 1.0 - first - second - unknown, 10.0)
 
 
-def test_the_names_share_the_laws_probability_a_part_its_own_and_all_else_what_is_left() -> None:
+def test_what_explains_shares_the_laws_probability_a_part_its_own_and_the_unknown_has_the_rest() -> None:
     law = Law(-0.5, (1.0, 2.0, 0.0, -0.3), (0.25, 0.8))
-    found, rules = calibrated(weighed(0.5, 0.2, 0.2), 0.25, law)
-    truth = 1.0 / (1.0 + np.exp(0.5 - np.log(0.7 / 0.3) - 0.5))
-    assert found.probabilities == pytest.approx((truth * 5.0 / 7.0, truth * 2.0 / 7.0))
+    found, rules = calibrated(weighed(0.5, 0.2, 0.2), 0.25, law)  # other parameters have 0.1
+    truth = 1.0 / (1.0 + np.exp(0.5 - np.log(0.8 / 0.2) - 0.5))
+    assert (*found.probabilities, found.retune) == pytest.approx((truth * 5 / 8, truth * 2 / 8, truth * 1 / 8))
     assert found.partly == pytest.approx(0.25 * (1.0 - truth))
-    assert found.unknown == pytest.approx(0.75 * (1.0 - truth) * 0.2 / 0.3)
-    assert sum(found.probabilities) + found.partly + found.unknown + found.retune == pytest.approx(1.0)
+    assert found.unknown == pytest.approx(0.75 * (1.0 - truth))
     told = {rule.rule: rule.value for rule in rules}
     assert (told["calibration_favour"], told["calibration_silent"], told["calibration_further"]) == (0.25, 0.0, 0.0)
-    assert told["calibration_share"] == pytest.approx(5.0 / 7.0)
+    assert told["calibration_share"] == pytest.approx(5.0 / 8.0)
     assert told["partly_true"] == pytest.approx(found.partly)
 
 
