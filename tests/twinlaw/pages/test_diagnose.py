@@ -154,6 +154,8 @@ def test_the_page_needs_no_network_and_no_script(whole_page: str) -> None:
     [
         ({}, "The rig has what the plant file lacks: cable spring of the azimuth with k = "),
         ({}, "(93.0 % sure)"),
+        ({"partly": 0.04}, "(93.0 % sure)"),
+        ({"partly": 0.06}, "(93.0 % sure, 6.0 % that a part of it is right)"),
         ({"unknown": Unknown(0.07)}, "Next comes an effect that has no name here (7.0 %)"),
         (
             {"effects": (replace(GAP.effects[0], probability=0.4),)},

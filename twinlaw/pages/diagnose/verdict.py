@@ -35,7 +35,8 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
     chosen = [h for h in diagnosis.effects if set(h.effect.split(" + ")) == set(diagnosis.found)]
     sizes = _sizes(chosen[0]) if chosen else {}
     names = " and ".join(words(name) + sizes.get(name, "") for name in diagnosis.found)
-    sure = f" ({percent(chosen[0].probability)} sure)" if chosen else ""
+    part = f", {percent(diagnosis.partly)} that a part of it is right" if diagnosis.partly > WORTH_A_THOUGHT else ""
+    sure = f" ({percent(chosen[0].probability)} sure{part})" if chosen else ""
     likely = "most likely " if chosen and chosen[0].probability < LIKELY else ""
     gone = diagnosis.shrinkage.fraction if diagnosis.shrinkage else None
     gain = (
