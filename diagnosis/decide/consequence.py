@@ -12,9 +12,8 @@ from diagnosis.decide.weighing import Weighed
 from diagnosis.decisions import decided
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis
-from diagnosis.validate.prediction import predictions
-from diagnosis.validate.score import Errors, as_noisy, errors_of, score
+from diagnosis.validate.fitted_logs import FittedLogs
+from diagnosis.validate.score import score
 from jobs.thread_map import thread_map
 from records.reasons import Decision
 
@@ -31,9 +30,8 @@ def consequence(
     asked = sorted(zip(shares, tried, strict=True), key=lambda entry: -entry[0])[:ASKED]
     if not asked:
         return ()
-    own, *others = thread_map(
-        lambda entry: _errors(case, entry.fit.hypothesis), [plain, *(entry for _, entry in asked)]
-    )
+    logs = FittedLogs(case)
+    own, *others = thread_map(lambda entry: logs.errors(entry.fit.hypothesis), [plain, *(entry for _, entry in asked)])
     weights = [max(share, LEAST_WEIGHT) for share, _ in asked]
     gain = float(np.average([score(other, own).gain for other in others], weights=weights))
     of = " + ".join(asked[0][1].effects) or "parameters"
@@ -50,7 +48,7 @@ def without_idle(
     What such an effect gains in nats it gains of the noise: it says nothing of what it stands beside, so those without it are compared by
     their own evidence, the names together as probable as before.
     """
-    judged: dict[Hypothesis, Errors] = {}
+    logs = FittedLogs(case)
     shares, whole = dict(zip(weighed.fitted, weighed.probabilities, strict=True)), sum(weighed.probabilities)
     asked, rules = set[FittedHypothesis](), list[Decision]()
     while (entry := _next(shares, asked)) is not None:
@@ -58,7 +56,7 @@ def without_idle(
         fewer = _one_less(entry, tried)
         if fewer is None:
             continue
-        gain = score(_better(case, judged, entry, fewer), _better(case, judged, fewer, entry)).gain
+        gain = logs.gain(entry.fit.hypothesis, fewer.fit.hypothesis)
         left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
         idle = gain < decisions.MATTERS
         outcome = f"{left} is left out" if idle else f"{left} matters"
@@ -92,21 +90,3 @@ def _one_less(entry: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> Fit
         if len(other.effects) == len(entry.effects) - 1 > 0 and set(other.effects) < set(entry.effects)
     ]
     return max(fewer, key=lambda other: other.evidence, default=None)
-
-
-def _better(case: Case, judged: dict[Hypothesis, Errors], entry: FittedHypothesis, other: FittedHypothesis) -> Errors:
-    """The errors of a hypothesis under its own noise or under that of the other, whichever predicts better: noise is not what is asked."""
-    own = entry.fit.hypothesis
-    if own not in judged:
-        judged[own] = _errors(case, own)
-    noisy = _errors(case, as_noisy(case, own, other.fit.hypothesis))
-    return noisy if score(noisy, judged[own]).gain > 0.0 else judged[own]
-
-
-def _errors(case: Case, hypothesis: Hypothesis) -> Errors:
-    """The errors of its predictions of the logs that it was fitted to."""
-    return errors_of(case, hypothesis, lambda one: _all(case, one))
-
-
-def _all(case: Case, hypothesis: Hypothesis) -> list[Array]:
-    return [predictions(case, flight, hypothesis) for flight in case.flights]

@@ -15,9 +15,9 @@ from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
 from diagnosis.validate.prediction import predictions, windows
-from diagnosis.validate.score import DRAWS, Errors, Score, as_noisy, drawn_gains, errors_of, score
+from diagnosis.validate.score import DRAWS, Errors, Score, drawn_gains, errors_of, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note

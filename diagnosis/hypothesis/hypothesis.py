@@ -221,3 +221,11 @@ def passes(
     runs = thread_map(over, case.flights)
     found = [run for run in runs if run is not None and np.isfinite(run.log_likelihood)]
     return found if len(found) == len(runs) else None
+
+
+def as_noisy(case: Case, hypothesis: Hypothesis, other: Hypothesis) -> Hypothesis:
+    """The hypothesis with all noise of another: noise predicts nothing, but says how sure a filter is of where a prediction begins."""
+    effects = case.library.effects
+    gusts = {name: values for name, values in other.effects.items() if effects[name].is_noise}
+    kept = {name: values for name, values in hypothesis.effects.items() if not effects[name].is_noise}
+    return hypothesis.with_effects({**kept, **gusts}).with_noise_of(other)

@@ -114,8 +114,8 @@ def with_twins(case: Case, told: Search, first: FittedHypothesis) -> Search:
     """
     found = {frozenset(entry.effects): entry for entry in told.fitted}
     known = len(found)
-    ends = [with_noise_beside(case, entry) for entry in fit_twins(case, found, first)]
-    kept = [entry for entry in ends if _certain(entry, found)]
+    ends = fit_twins(case, found, first)
+    kept = [entry for entry in with_noise_beside(case, ends) or ends if _certain(entry, found)]
     if len(found) == known or not kept:
         return told
     return replace(told, fitted=tuple(sorted([*told.fitted, *kept], key=lambda entry: -entry.evidence)))
@@ -182,7 +182,7 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     settled = [found[frozenset(entry.effects)] for entry in asked]
     keep_better(found, thread_map(lambda entry: with_own_events(case, entry), settled))
     finalists = _finalists(case, [found[frozenset(entry.effects)] for entry in best])
-    keep_better(found, thread_map(lambda entry: with_noise_beside(case, entry), finalists))
+    keep_better(found, with_noise_beside(case, finalists))
 
 
 def _finalists(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:

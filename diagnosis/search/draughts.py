@@ -1,6 +1,6 @@
 """Torques that come and go: noise of the plant, and told as a gust where nothing else is missing and they are more than a rig's usual."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from diagnosis import decisions
@@ -12,6 +12,8 @@ from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from diagnosis.search.fitting import once_more
+from diagnosis.validate.fitted_logs import FittedLogs
+from jobs.thread_map import thread_map
 from records.reasons import Decision
 from sim.effect import Role
 
@@ -45,17 +47,34 @@ def beyond_noise(case: Case, hypothesis: Hypothesis) -> list[str]:
     return [name for name, share in gust_shares(case, hypothesis).items() if share > decisions.USUAL_GUST]
 
 
-def with_noise_beside(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
-    """The hypothesis with the noise with a memory that the logs tell of beside its names, where that is likelier and no torque that comes
-    and goes is more than noise; else itself.
+def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
+    """Hypotheses with the noise with a memory that the logs tell of beside their names, where that is likelier; none where beside the best
+    of them it takes what is no noise.
 
-    Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque.
+    Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
+    also take what a name or a parameter explains: it is larger than noise is then, or a second of these logs is predicted worse for it.
+    Where it does so beside the best, evidence under it is not to be compared with evidence without.
     """
+    best = max(fitted, key=lambda entry: entry.evidence, default=None)
+    first = None if best is None else _with_memory(case, best)
+    if first is None:
+        return []
+    others = thread_map(lambda entry: _with_memory(case, entry), [entry for entry in fitted if entry is not best])
+    return [first, *(entry for entry in others if entry is not None)]
+
+
+def _with_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
+    """The hypothesis with its noise with a memory, or itself where that is no likelier; None where it would be more than noise."""
     found = with_memory(case, fitted.fit)
-    if found is fitted.fit or beyond_noise(case, found.hypothesis):
+    if found is fitted.fit:
         return fitted
     told = once_more(case, as_fitted(case, found))
-    return told if told.evidence > fitted.evidence else fitted
+    if told.evidence <= fitted.evidence:
+        return fitted
+    if beyond_noise(case, told.fit.hypothesis):
+        return None
+    gain = FittedLogs(case).gain(told.fit.hypothesis, fitted.fit.hypothesis)
+    return told if gain >= -decisions.MATTERS else None
 
 
 def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:

@@ -106,14 +106,6 @@ def _gains(model: Errors, other: Errors, known: NDArray[np.bool_], weights: Arra
     return _total(theirs - own) + float(np.sum(model.grid - other.grid))
 
 
-def as_noisy(case: Case, hypothesis: Hypothesis, other: Hypothesis) -> Hypothesis:
-    """The hypothesis with all noise of another: noise predicts nothing, but says how sure a filter is of where a prediction begins."""
-    effects = case.library.effects
-    gusts = {name: values for name, values in other.effects.items() if effects[name].is_noise}
-    kept = {name: values for name, values in hypothesis.effects.items() if not effects[name].is_noise}
-    return hypothesis.with_effects({**kept, **gusts}).with_noise_of(other)
-
-
 def _log_rms(squares: Array, known: NDArray[np.bool_], weights: Array) -> Array:
     """ln rms (draws, horizons, outputs), NaN where nothing is known."""
     total = np.tensordot(weights, np.where(known, squares, 0.0), axes=1)

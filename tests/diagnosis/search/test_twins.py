@@ -62,14 +62,14 @@ def test_a_smooth_torque_is_noise_and_no_lag_of_the_sensor(late: Case) -> None:
     # against the drive: before and behind a nearly linear plant a lag is one.
     sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
     assert sensor.evidence - drive.evidence > 10.0
-    sensor, drive = (with_noise_beside(late, entry) for entry in (sensor, drive))
+    sensor, drive = with_noise_beside(late, [sensor, drive])
     assert drive.effects == ("input.lag",)
     assert "arm.gust" in drive.fit.hypothesis.effects
     assert sensor.evidence - drive.evidence < 3.0
 
 
 def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> None:
-    sensor = with_noise_beside(late, supposed(late, {"theta_sensor.lag": {"tau": 0.1}}))
+    (sensor,) = with_noise_beside(late, [supposed(late, {"theta_sensor.lag": {"tau": 0.1}})])
     found = {frozenset(sensor.effects): sensor}
     fresh = fit_twins(late, found, sensor)
     assert frozenset(("input.lag",)) in found
@@ -104,5 +104,5 @@ def test_a_corner_that_was_fitted_sharp_is_begun_round_again() -> None:
 def test_noise_beside_a_name_is_left_alone_where_the_logs_tell_of_none() -> None:
     case = arm_case(arm_log(LAG, seed=43))
     plain = supposed(case, LAG)
-    assert with_noise_beside(case, plain) is plain
+    assert with_noise_beside(case, [plain]) == [plain]
     assert coloured_noise_of(case, plain.fit.hypothesis).effects.keys() == plain.fit.hypothesis.effects.keys()

@@ -1,0 +1,39 @@
+"""How hypotheses predict the logs that they were fitted to: by how many nats a reading one does so better than another."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy
+from diagnosis.validate.prediction import predictions
+from diagnosis.validate.score import Errors, errors_of, score
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FittedLogs:
+    """The logs of a case, and the errors of what was judged on them already."""
+
+    case: Case
+    judged: dict[Hypothesis, Errors] = field(default_factory=dict)
+
+    def gain(self, one: Hypothesis, other: Hypothesis) -> float:
+        """By how many nats a reading `one` predicts these logs better than `other` (score.py), each under its own noise or under that of
+        the other, whichever predicts better: noise is not what is asked."""
+        return score(self._better(one, other), self._better(other, one)).gain
+
+    def errors(self, hypothesis: Hypothesis) -> Errors:
+        """The errors of its predictions."""
+        if hypothesis not in self.judged:
+            self.judged[hypothesis] = errors_of(self.case, hypothesis, self._read)
+        return self.judged[hypothesis]
+
+    def _better(self, hypothesis: Hypothesis, other: Hypothesis) -> Errors:
+        own, noisy = self.errors(hypothesis), errors_of(self.case, as_noisy(self.case, hypothesis, other), self._read)
+        return noisy if score(noisy, own).gain > 0.0 else own
+
+    def _read(self, hypothesis: Hypothesis) -> list[Array]:
+        return [predictions(self.case, flight, hypothesis) for flight in self.case.flights]
