@@ -38,7 +38,7 @@ class Exit(Enum):
     EFFECT_ADDED = "effect_added"
     PARAMETERS_ALONE = "parameters_alone"
     NAMED_NOT_ADDED = (
-        "named_not_added"  # the likeliest effect predicts the hold-out worse, or is unlikely and not better there
+        "named_not_added"  # the likeliest effect predicts the hold-out worse, or is unlikely and no better
     )
     UNKNOWN_EFFECT = "unknown_effect"
 

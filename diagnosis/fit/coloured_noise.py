@@ -45,9 +45,8 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
     for colour in _colours(case):
         starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
         start, there = _likeliest(part, likeliest(part, starts)[0], [colour])
-        is_new = (
-            colour.of(hypothesis) is None
-        )  # what was found beside other effects may be another noise than what is left beside these
+        # What is there already was found beside other effects, and may be another noise than what is left beside these.
+        is_new = colour.of(hypothesis) is None
         if colour.of(start) is None or (is_new and there <= likelihood_of(part, hypothesis)):
             continue
         ended, there = _likeliest(case, start, [colour])

@@ -108,15 +108,14 @@ def _best(found: Mapping[frozenset[str], FittedHypothesis]) -> FittedHypothesis:
 
 
 def with_twins(case: Case, told: Search, first: FittedHypothesis) -> Search:
-    """The search with what is hardly told from `first`, fitted where that was not tried; itself where nothing is likelier for it.
+    """The search with what is hardly told from `first`, fitted where that was not tried; itself where all was.
 
     What is told first may be another than what the search found best: the hold-out has a say in that.
     """
     found = {frozenset(entry.effects): entry for entry in told.fitted}
-    known = len(found)
     ends = fit_twins(case, found, first)
     kept = [entry for entry in with_noise_beside(case, ends) or ends if _certain(entry, found)]
-    if len(found) == known or not kept:
+    if not kept:
         return told
     return replace(told, fitted=tuple(sorted([*told.fitted, *kept], key=lambda entry: -entry.evidence)))
 
