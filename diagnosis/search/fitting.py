@@ -27,7 +27,7 @@ STEP_FINELY = (
     2e-4,
     4e-5,
 )  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
-REFINED_ROUNDS = 5
+REFINED_ROUNDS = 5  # from where a first fit ended: its own rule stops earlier where little is gained
 VANISHED = 0.02  # of where a shape's search begins: so near none its slopes vanish
 LEVELS = np.geomspace(
     0.5, 2.0, 7

@@ -12,9 +12,9 @@ from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.prior import COMMON
 
-NEVER = (
-    30.0  # beyond every declared limit of the plants, or so much more than a larger usual command: the effect is absent
-)
+# Where the limit is no limit, and the effect absent: beyond what the plants here declare, in an input's own unit, and where a usual command
+# is larger than that, a quarter beyond it. Nothing is decided by how far.
+NEVER = 30.0
 BEYOND = 1.25
 
 # Of a corner, as a share of where it lies.
