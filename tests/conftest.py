@@ -3,6 +3,7 @@
 import fcntl
 import gc
 import os
+import sys
 from collections.abc import Generator
 from pathlib import Path
 
@@ -11,6 +12,10 @@ import pytest
 import twinlaw as twinlaw  # before NumPy, whose threads it counts
 from tests.soak import SOAK
 from toolchain.cache import CACHE_DIR
+
+# As in the Makefile, for who calls pytest itself: else both workers and every process that a test starts compile what they import anew.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 
 @pytest.fixture(scope="session")
