@@ -1,6 +1,7 @@
 """Loops of other units than rad and V go the whole way: a carriage's position, a coil's current, a shaft's torque, a tank's level."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -145,7 +146,7 @@ def written(name: str, folder: Path) -> Path:
     "name",
     sampled(
         ["emps", "by_place", "coil", "torque", "tank", "heater", "tanks", "by_level"],
-        keep=["by_place", "coil"],
+        keep=["coil"],
     ),
 )
 def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -179,6 +180,18 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
     assert "never" not in page
     assert macro in header
     assert key in str(table)
+
+
+def test_a_law_is_scheduled_by_a_length(tmp_path: Path) -> None:
+    """Truth: the range in metres that the plant's file asks for, in the table and as what the C clamps the carriage's place to."""
+    plant, table = written("by_place", tmp_path), tmp_path / "controller.json"
+    assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 0
+    assert main(["generate", "--table", str(table), "--out", str(tmp_path)]) == 0
+    content, generated = json.loads(table.read_text()), tmp_path / "generated"
+    assert (content["q_min_m"], content["q_max_m"]) == (-0.1, 0.1)
+    assert {len(powers) for powers in content["carriage"]["q_V_m"]} == {3}
+    assert re.findall(r"LAW_Q_M.._M \((.+)f\)", (generated / "law.h").read_text()) == ["-0.100000001", "0.100000001"]
+    assert "clamp(self->q_m, LAW_Q_MIN_M, LAW_Q_MAX_M)" in (generated / "law.c").read_text()
 
 
 def test_a_plant_with_positions_is_scheduled_by_these_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
