@@ -9,7 +9,7 @@ correlation time T, in one draw of its phases. Another run has other phases, so 
 """
 
 from collections.abc import Iterator
-from functools import partial
+from functools import cache, partial
 
 import sympy
 
@@ -44,12 +44,16 @@ def effects(model: Model) -> Iterator[Effect]:
 
 
 def _draw(T: sympy.Symbol) -> sympy.Expr:
+    size, sines = _numbers()
+    return size * sympy.Add(*(sympy.cos(omega / T * TIME + phi) for omega, phi in sines))
+
+
+@cache
+def _numbers() -> tuple[sympy.Expr, tuple[tuple[sympy.Expr, sympy.Expr], ...]]:
+    """sqrt(2 / N), and omega_i T and phi_i of every sine."""
     shares = [sympy.Rational(2 * i - 1, 2 * SINES) for i in range(1, SINES + 1)]
-    sines = [
-        sympy.cos(sympy.tan(sympy.pi / 2 * share).evalf() / T * TIME + (k * TURN).evalf())
-        for k, share in enumerate(shares)
-    ]
-    return sympy.sqrt(sympy.Rational(2, SINES)).evalf() * sympy.Add(*sines)
+    sines = tuple((sympy.tan(sympy.pi / 2 * share).evalf(), (k * TURN).evalf()) for k, share in enumerate(shares))
+    return sympy.sqrt(sympy.Rational(2, SINES)).evalf(), sines
 
 
 def _unknown(axis: str, model: Model, on: sympy.Symbol, sigma: sympy.Symbol, T: sympy.Symbol) -> Model:
