@@ -155,9 +155,16 @@ def _linked() -> Sequence[str]:
 
 def load_shared(cdef: str, path: Path) -> tuple[FFI, Any]:
     """Open a shared library through cffi in ABI mode with the declarations `cdef`; returns (ffi, lib)."""
+    ffi = _declared(cdef)
+    return ffi, ffi.dlopen(str(path))
+
+
+@cache
+def _declared(cdef: str) -> FFI:
+    """Read once: most libraries declare what others do, and to read it takes longer than to open them."""
     ffi = FFI()
     ffi.cdef(cdef)
-    return ffi, ffi.dlopen(str(path))
+    return ffi
 
 
 @cache
