@@ -3,7 +3,7 @@
 import bisect
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from elftools.common.exceptions import ELFError
@@ -64,7 +64,7 @@ class Image:
     def from_file(cls, path: Path, chip: Board = STM32G071) -> "Image":
         """Read the image at `path`; raises BadInput when there is none."""
         try:
-            return cls(path.read_bytes(), str(path), chip)
+            return _image(path.read_bytes(), str(path), chip)
         except OSError as error:
             raise _not_an_image(str(path), error.strerror or str(error), chip) from error
 
@@ -130,6 +130,12 @@ class Image:
                 number = state.file - first
                 name = files[number] if 0 <= number < len(files) else "?"
                 yield SourceLine(state.address, name, 0 if state.end_sequence else state.line)
+
+
+@lru_cache(maxsize=16)
+def _image(elf: bytes, where: str, chip: Board) -> Image:
+    """Read once: many boards are given the same file, and its names take longer to read than the board to start."""
+    return Image(elf, where, chip)
 
 
 def as_image(source: "bytes | Path | Image", chip: Board) -> Image:
