@@ -58,10 +58,10 @@ def verb_text(word: str) -> str:
 
 
 def build_parser(asked: Sequence[str]) -> Parser:
-    """The parser of all verbs, with the options of those that are `asked` for."""
+    """The parser of the verbs that are `asked` for, with their options; where none is, of all without."""
     parser = Parser(prog="twinlaw", description=DESCRIPTION, epilog=EPILOGUE)
     verbs = parser.add_subparsers(title="verbs, in the order of the work", metavar="VERB", required=True)
-    for word in VERBS:
+    for word in [word for word in VERBS if word in asked] or VERBS:
         text = verb_text(word)
         sub = verbs.add_parser(
             word,
