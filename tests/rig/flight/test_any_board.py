@@ -296,7 +296,7 @@ def test_a_table_with_pins_reads_back_as_itself(tmp_path: Path) -> None:
 
 
 def test_a_board_of_other_loops_is_refused_before_anything_is_armed(tmp_path: Path) -> None:
-    table = any_table((2,), 0)
+    table = any_table((2, 1, 4, 3), 2)
     build_firmware(generate_law(table), tmp_path, loops=table.loops)
     with pytest.raises(BadInput, match=r"protocol.*schema"):
         BoardClient.connect(f"emulated://{tmp_path / 'firmware.elf'}")
