@@ -154,7 +154,10 @@ def _linked() -> Sequence[str]:
 
 
 def load_shared(cdef: str, path: Path) -> tuple[FFI, Any]:
-    """Open a shared library through cffi in ABI mode with the declarations `cdef`; returns (ffi, lib)."""
+    """Open a shared library through cffi in ABI mode with the declarations `cdef`; returns (ffi, lib).
+
+    The ffi is that of all libraries with the same declarations: nobody may add to it.
+    """
     ffi = _declared(cdef)
     return ffi, ffi.dlopen(str(path))
 

@@ -41,6 +41,7 @@ class HostLaw:
     """A compiled law: `reset` and `step` for the closed loop, `start` and `run` on bits of many lanes for comparisons."""
 
     name = "host"
+    declarations = _DECLARATIONS
 
     def __init__(
         self,
@@ -54,7 +55,7 @@ class HostLaw:
         library = build_shared(f"law-{arithmetic}", [*sources, driver("law_batch.c", loops)], flags=flags)
         self.arithmetic = arithmetic
         self._places = _places(texts["law.h"]) if arithmetic == "fixed" else None
-        self._ffi, self._lib = load_shared(_DECLARATIONS, library)
+        self._ffi, self._lib = load_shared(self.declarations, library)
         self.state_words = int(self._lib.law_batch_state_words())
         self._loops, word = len(loops), "int32_t" if arithmetic == "fixed" else "float"
         self._given = self._ffi.new(f"{word}[{2 * self._loops}]")

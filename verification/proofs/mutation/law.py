@@ -14,9 +14,10 @@ _FLAGS = ("-O1", "-std=c11", "-ffp-contract=off", "-fwrapv", "-fno-sanitize=unde
 class MutatedLaw(HostLaw):
     """The law with all its mutants compiled in."""
 
+    declarations = HostLaw.declarations + "void law_choose_mutant(int number);"
+
     def __init__(self, texts: Mapping[str, str], arithmetic: str, loops: tuple[Loop, ...]) -> None:
         super().__init__(texts, arithmetic, _FLAGS, loops)
-        self._ffi.cdef("void law_choose_mutant(int number);")
 
     def choose(self, number: int) -> None:
         """Make the law the mutant `number`, the original for 0."""
