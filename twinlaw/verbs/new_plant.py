@@ -1,6 +1,7 @@
 """Begin a plant of your own in a folder anywhere: its equations NAME.py, and beside them plant.toml with its parameters.
 
-Both are an arm on a hinge that works as it is, with comments that say what to change; every verb takes DIR/plant.toml as its --plant.
+Both work as they are and say what to change for another rig: an axis, an input, an output, a schedule. --like names what they begin as: an
+arm on a hinge, a motor whose speed is measured, or a heater, where nothing moves. Every verb takes DIR/plant.toml as its --plant, and
 docs/new-plant.md goes on from there. Files that are there already are not touched.
 """
 
@@ -12,13 +13,16 @@ from pathlib import Path
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw.cli import options
-from twinlaw.workflows.new_plant import plant_texts
+from twinlaw.workflows.new_plant import BEGINNINGS, plant_texts
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """NAME, --out, --json."""
+    """NAME, --out, --like, --json."""
     parser.add_argument("name", metavar="NAME", help="small letters, digits and _, as in my_arm")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where both files go; default: a folder NAME here")
+    parser.add_argument(
+        "--like", choices=BEGINNINGS, default=BEGINNINGS[0], help="what it begins as; default: %(default)s"
+    )
     options.as_json(parser)
 
 
@@ -37,7 +41,7 @@ def _write_all(files: Mapping[Path, str]) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Write both files unless either is there."""
-    texts = plant_texts(chosen.name)
+    texts = plant_texts(chosen.name, chosen.like)
     folder = chosen.out or Path(chosen.name)
     files = {folder / name: text for name, text in texts.items()}
     there = next((path for path in files if path.exists()), None)

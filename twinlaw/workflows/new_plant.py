@@ -10,15 +10,18 @@ from sim.plants import MODELS
 from toolchain.templates import text_templates
 from twinlaw.templates import TEMPLATES
 
+# What a plant can begin as: the templates new_plant/BEGINNING.py.j2 and .toml.j2. The first is the default.
+BEGINNINGS = ("arm", "motor", "heater")
+
 WINDOWS_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
 
 
-def plant_texts(name: str) -> dict[str, str]:
-    """File name -> text of a new plant's folder; raises BadInput where `name` cannot be a plant's."""
+def plant_texts(name: str, beginning: str) -> dict[str, str]:
+    """File name -> text of a new plant's folder, which begins as one of BEGINNINGS; raises BadInput where `name` cannot be a plant's."""
     _check(name)
     templates = text_templates(TEMPLATES)
     title = name.replace("_", " ").capitalize()
-    files = {f"{name}.py": "plant.py.j2", "plant.toml": "plant.toml.j2"}
+    files = {f"{name}.py": f"new_plant/{beginning}.py.j2", "plant.toml": f"new_plant/{beginning}.toml.j2"}
     return {file: templates.get_template(text).render(name=name, title=title) for file, text in files.items()}
 
 

@@ -1,17 +1,52 @@
 """`twinlaw new-plant`: what it writes is a plant that works as it is, in a folder anywhere."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from records.plant import load_plant
-from records.table import load_table
+from records.table import ControllerTable, load_table
 from sim.added_effects import library
 from sim.bind import BoundPlant, bind
 from sim.simulate import simulate
+from tests.test_project import ROOT
 from twinlaw.command import main
+from twinlaw.workflows.new_plant import BEGINNINGS
+
+# What each closes: the loop's name, its output and its input.
+LOOPS = {
+    "arm": ("arm", "theta_rad", "u_V"),
+    "motor": ("shaft", "omega_rad_s", "u_V"),
+    "heater": ("body", "T_K", "heat_W"),
+}
+
+SCHEDULE = (
+    'schedule = "theta_rad"\ntheta_min_rad = -0.8\ntheta_max_rad = 0.8\noperating_points = 9\ncoefficient_degree = 2\n'
+)
+RATE = "\n[sensors.theta_dot_rad_s]\nresolution_rad_s = 0.01\n"
+
+
+def begun(like: str, folder: Path) -> Path:
+    """The plant file of a plant that begins so."""
+    assert main(["new-plant", "mine", "--like", like, "--out", str(folder)]) == 0
+    return folder / "plant.toml"
+
+
+def change(path: Path, old: str, new: str) -> None:
+    """Change the one place of a file."""
+    text = path.read_text(encoding="utf-8")
+    assert text.count(old) == 1, old
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def designed(plant: Path) -> ControllerTable:
+    """The table that `design` makes for it."""
+    assert main(["design", "--plant", str(plant), "--out", str(plant.parent)]) == 0
+    return load_table(plant.parent / "controller.json")
 
 
 @pytest.fixture
@@ -33,17 +68,87 @@ def test_the_arm_swings_as_its_equation_says(arm: BoundPlant) -> None:
     np.testing.assert_allclose(run.y[:, 0], expected, rtol=0, atol=1e-8)
 
 
-def test_a_controller_is_designed_for_it_at_once(tmp_path: Path) -> None:
-    assert main(["new-plant", "my_arm", "--out", str(tmp_path / "arm")]) == 0
-    assert main(["design", "--plant", str(tmp_path / "arm" / "plant.toml"), "--out", str(tmp_path)]) == 0
-    assert [loop.axis for loop in load_table(tmp_path / "controller.json").loops] == ["arm"]
+def test_the_motor_runs_as_fast_as_its_equations_say(tmp_path: Path) -> None:
+    # At rest of both: u = R i + K omega and K i = b omega. The slowest pole is at -67 rad/s: after 1 s nothing is left of the start.
+    motor = bind(load_plant(begun("motor", tmp_path)))
+    R, K, b = (motor.parameter(name) for name in ("R", "K", "b"))
+    run = simulate(motor, np.arange(1001) * 1e-3, x0=[0.0, 0.0], drive=np.full((1001, 1), 6.0))
+    assert run.x is not None
+    assert run.x[-1, 1] == pytest.approx(6.0 * K / (R * b + K**2), rel=1e-6)
+
+
+def test_the_heater_warms_as_its_equation_says(tmp_path: Path) -> None:
+    # T = heat / G (1 - exp(-G t / C)) from the room's temperature on.
+    heater = bind(load_plant(begun("heater", tmp_path)))
+    C, G = (heater.parameter(name) for name in ("C", "G"))
+    t_s = np.arange(601) * 0.1
+    run = simulate(heater, t_s, x0=[0.0], drive=np.full((601, 1), 30.0))
+    assert run.x is not None
+    np.testing.assert_allclose(run.x[:, 0], 30.0 / G * (1.0 - np.exp(-G * t_s / C)), rtol=0, atol=1e-6)
+
+
+def test_it_begins_as_an_arm_unless_told_otherwise(tmp_path: Path) -> None:
+    assert set(LOOPS) == set(BEGINNINGS)
+    begun("arm", tmp_path / "told")
+    assert main(["new-plant", "mine", "--out", str(tmp_path / "untold")]) == 0
+    for file in ("mine.py", "plant.toml"):
+        assert (tmp_path / "untold" / file).read_bytes() == (tmp_path / "told" / file).read_bytes()
+
+
+@pytest.mark.parametrize("like", BEGINNINGS)
+def test_a_controller_is_designed_and_generated_for_it_at_once(like: str, tmp_path: Path) -> None:
+    table = designed(begun(like, tmp_path))
+    assert [(loop.axis, loop.output, loop.input) for loop in table.loops] == [LOOPS[like]]
+    assert main(["generate", "--table", str(tmp_path / "controller.json"), "--out", str(tmp_path)]) == 0
+    assert table.digest in (tmp_path / "generated" / "law.h").read_text(encoding="utf-8")
 
 
 @pytest.mark.soak
-def test_it_flies_at_once(tmp_path: Path) -> None:
-    assert main(["new-plant", "my_arm", "--out", str(tmp_path / "arm")]) == 0
-    assert main(["run", "--plant", str(tmp_path / "arm" / "plant.toml"), "--out", str(tmp_path)]) == 0
+@pytest.mark.parametrize("like", BEGINNINGS)
+def test_it_flies_at_once(like: str, tmp_path: Path) -> None:
+    assert main(["run", "--plant", str(begun(like, tmp_path / "mine")), "--out", str(tmp_path)]) == 0
     assert (tmp_path / "run.csv").exists()
+
+
+@pytest.mark.parametrize("like", BEGINNINGS)
+def test_its_equations_keep_the_project_s_style(like: str, tmp_path: Path) -> None:
+    begun(like, tmp_path / "sim" / "plants")  # where Ruff takes `sim` for one package with the file
+    for words in (["check"], ["format", "--check"]):
+        command = [str(Path(sys.executable).parent / "ruff"), *words, "--config", str(ROOT / "pyproject.toml")]
+        done = subprocess.run([*command, str(tmp_path)], cwd=ROOT, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_schedule_is_left_out_as_the_arm_s_file_says(tmp_path: Path) -> None:
+    plant = begun("arm", tmp_path)
+    change(plant, SCHEDULE, "")
+    change(plant, "[design.arm]\n", "[design.arm]\nreference_min_rad = -0.5\nreference_max_rad = 0.5\n")
+    assert designed(plant).schedule is None
+
+
+@pytest.mark.parametrize("like", ["motor", "heater"])
+def test_a_schedule_is_put_in_as_the_file_says(like: str, tmp_path: Path) -> None:
+    plant = begun(like, tmp_path)
+    lines = plant.read_text(encoding="utf-8").splitlines(keepends=True)
+    first = next(index for index, line in enumerate(lines) if line.startswith("# schedule"))
+    lines[first : first + 5] = [line.removeprefix("# ") for line in lines[first : first + 5]]
+    plant.write_text("".join(lines), encoding="utf-8")
+    table = designed(plant)
+    assert table.schedule is not None
+
+
+def test_another_output_is_added_as_the_equations_say(tmp_path: Path) -> None:
+    """Truth: an output, its place and its sensor are all it takes; the loop then names its own."""
+    plant = begun("arm", tmp_path)
+    change(
+        tmp_path / "mine.py", 'outputs={"theta_rad": THETA}', 'outputs={"theta_rad": THETA, "theta_dot_rad_s": OMEGA}'
+    )
+    place = '"theta_sensor": SensorPlace("theta_rad", "rad")'
+    change(tmp_path / "mine.py", place, f'{place}, "gyro": SensorPlace("theta_dot_rad_s", "rad s^-1")')
+    change(plant, "resolution_rad = 1.534e-3\n", f"resolution_rad = 1.534e-3\n{RATE}")
+    change(plant, "[design.arm]\n", '[design.arm]\noutput = "theta_rad"\n')
+    assert [loop.output for loop in designed(plant).loops] == ["theta_rad"]
+    assert "gyro.offset" in library(bind(load_plant(plant)))
 
 
 def test_the_library_has_effects_for_it(arm: BoundPlant) -> None:
