@@ -27,7 +27,43 @@ LOOPS = {
 SCHEDULE = (
     'schedule = "theta_rad"\ntheta_min_rad = -0.8\ntheta_max_rad = 0.8\noperating_points = 9\ncoefficient_degree = 2\n'
 )
-RATE = "\n[sensors.theta_dot_rad_s]\nresolution_rad_s = 0.01\n"
+# A cart beside the arm, pushed by a force of its own: what each line of the files becomes.
+CART_EQUATIONS = {
+    'U = symbol("u_V")': 'U = symbol("u_V")\nQ, V, PUSH = symbol("q_m"), symbol("q_dot_m_s"), symbol("push_N")',
+    "PARAMETERS = (": 'PARAMETERS = (\n    ParameterSpec("m", 1, "kg", "positive"),',
+    "states=(THETA, OMEGA)": "states=(THETA, OMEGA, Q, V)",
+    "inputs=(U,)": "inputs=(U, PUSH)",
+    'outputs={"theta_rad": THETA}': 'outputs={"theta_rad": THETA, "q_m": Q}',
+    "rates={THETA: OMEGA}": "rates={THETA: OMEGA, Q: V}",
+    "axes=(Axis(": 'axes=(Axis("cart", Q, V, p["m"], PUSH, 0, None, None), Axis(',
+    'input_limits={U: (-p["u_max"], p["u_max"])}': 'input_limits={U: (-p["u_max"], p["u_max"]), PUSH: (-5, 5)}',
+    'inputs={"input"': 'inputs={"push": InputPlace(PUSH, "N", 5.0), "input"',
+    'axes={"arm"': 'axes={"cart": AxisPlace("q_m", "N", 1.0, length_unit="m"), "arm"',
+    'sensors={"theta_sensor"': 'sensors={"q_sensor": SensorPlace("q_m", "m", 0.5), "theta_sensor"',
+}
+CART_FILE = {
+    "[sensors.theta_rad]": """[parameters.m]
+value = 1.0
+sd = 0.1
+unit = "kg"
+source = "a test"
+
+[sensors.q_m]
+resolution_m = 1e-4
+
+[sensors.theta_rad]""",
+    "[design.arm]\npoles_rad_s": """[design.cart]
+output = "q_m"
+input = "push_N"
+poles_rad_s = [-2.0, -3.0, -4.0, -5.0]
+reference_min_m = -0.3
+reference_max_m = 0.3
+
+[design.arm]
+output = "theta_rad"
+input = "u_V"
+poles_rad_s""",
+}
 
 
 def begun(like: str, folder: Path) -> Path:
@@ -137,18 +173,18 @@ def test_a_schedule_is_put_in_as_the_file_says(like: str, tmp_path: Path) -> Non
     assert table.schedule is not None
 
 
-def test_another_output_is_added_as_the_equations_say(tmp_path: Path) -> None:
-    """Truth: an output, its place and its sensor are all it takes; the loop then names its own."""
+def test_another_axis_input_and_output_are_added_where_the_equations_say(tmp_path: Path) -> None:
+    """Truth: a cart beside the arm takes these lines and no others; either is designed for, and the library knows both."""
     plant = begun("arm", tmp_path)
-    change(
-        tmp_path / "mine.py", 'outputs={"theta_rad": THETA}', 'outputs={"theta_rad": THETA, "theta_dot_rad_s": OMEGA}'
+    for old, new in CART_EQUATIONS.items():
+        change(tmp_path / "mine.py", old, new)
+    for old, new in CART_FILE.items():
+        change(plant, old, new)
+    loops = [(loop.axis, loop.output, loop.input) for loop in designed(plant).loops]
+    assert loops == [("cart", "q_m", "push_N"), LOOPS["arm"]]
+    assert {"arm.coulomb", "cart.coulomb", "push.deadzone", "q_sensor.backlash"} <= set(
+        library(bind(load_plant(plant)))
     )
-    place = '"theta_sensor": SensorPlace("theta_rad", "rad")'
-    change(tmp_path / "mine.py", place, f'{place}, "gyro": SensorPlace("theta_dot_rad_s", "rad s^-1")')
-    change(plant, "resolution_rad = 1.534e-3\n", f"resolution_rad = 1.534e-3\n{RATE}")
-    change(plant, "[design.arm]\n", '[design.arm]\noutput = "theta_rad"\n')
-    assert [loop.output for loop in designed(plant).loops] == ["theta_rad"]
-    assert "gyro.offset" in library(bind(load_plant(plant)))
 
 
 def test_the_library_has_effects_for_it(arm: BoundPlant) -> None:
