@@ -61,7 +61,8 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
         promised, before = 0.5 * float(g @ step), worth(runs, at)
         if promised < LITTLE_PROMISED:
             break
-        for moved in _tries(at, numbers, step, np.asarray(g / np.diag(information), float)):
+        alone = np.asarray(g / np.diag(information), float) if promised > NEARLY_THERE else None
+        for moved in _tries(at, numbers, step, alone):
             there = passes(case, moved)
             if there is not None and worth(there, moved) > before + LITTLE_PROMISED:
                 at, runs = moved, there
@@ -89,11 +90,13 @@ def _is_blocked(hypothesis: Hypothesis, number: Number, step: float) -> bool:
     return number.of(number.put(hypothesis, x + float(np.copysign(NUDGE, step)))) == x
 
 
-def _tries(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Array) -> Iterator[Hypothesis]:
-    """Where the likelihood may be higher: shares of the whole step; where axes stick, and slopes lead nowhere, one number alone, by its own
-    step or by ACROSS."""
+def _tries(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Array | None) -> Iterator[Hypothesis]:
+    """Where the likelihood may be higher: shares of the whole step; where axes stick, and slopes lead nowhere, one number `alone`, by its
+    own step or by ACROSS; not where so little is promised that it may be noise of the likelihood."""
     for share in SHARES:
         yield _moved(hypothesis, numbers, step, share)
+    if alone is None:
+        return
     for place in np.argsort(-np.abs(alone)).tolist():
         yield _moved(hypothesis, [numbers[place]], alone[[place]], SHARES[0])
     for number in numbers:
