@@ -10,11 +10,12 @@ from diagnosis.decisions import decided
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.search.draughts import with_noise_beside
 from diagnosis.search.exchange import exchange, fit_twins, is_twin
-from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
+from diagnosis.search.fitting import Job, is_astray, keep_better, once_more, refined, rough
 from diagnosis.search.own_events import with_own_events
 from jobs.thread_map import thread_map
 from records.reasons import Decision
@@ -75,12 +76,22 @@ def alone(
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
     least = max(decisions.LEAST_GAIN, decisions.LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
     jobs = _promising(nominal, score_tests, least)[: decisions.SINGLES]
+    jobs += _promising(nominal, _from_stated(case, nominal), least)[: decisions.SINGLES]
     _fit_all(case, jobs, found, first)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
     if found:
         fit_twins(case, found, _best(found))
     return Alone(found, first, worth, linearisation, tuple(score_tests))
+
+
+def _from_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
+    """Score tests from the plant as stated, by a filter that expects any motion, where the nominal plant went astray: its parameters took
+    the part of what is missing then, which shows nothing beside them."""
+    if not is_astray(nominal.hypothesis, decisions.ASTRAY_FIRST):
+        return []
+    stated = fit(case, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE)), rounds=0)
+    return [] if stated is None else score_effects(case, linearised(case, stated), case.library.candidates)
 
 
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
@@ -174,12 +185,13 @@ def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> li
 
 
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
-    """Once more the best of all, until effects and all noise agree: a fit not yet at its end would lose to one with an idle effect."""
+    """Once more the best of all, and of each number of effects the best with its twins, until effects and all noise agree: a fit not yet at
+    its end would lose to one with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
-    asked = best[: decisions.SETTLED_FITS]
-    keep_better(found, [end for end in thread_map(lambda entry: refined(case, entry), asked) if end])
-    settled = [found[frozenset(entry.effects)] for entry in asked]
-    keep_better(found, thread_map(lambda entry: with_own_events(case, entry), settled))
+    asked = [frozenset(e.effects) for e in dict.fromkeys([*best[: decisions.SETTLED_FITS], *_finalists(case, best)])]
+    for step in (refined, once_more, with_own_events):
+        ends = thread_map(lambda names, step=step: step(case, found[names]), asked)
+        keep_better(found, [end for end in ends if end is not None])
     finalists = _finalists(case, [found[frozenset(entry.effects)] for entry in best])
     keep_better(found, with_noise_beside(case, finalists))
 
@@ -275,6 +287,7 @@ def _fit_all(
     good = [entry for entry in begun if entry.evidence - first >= decisions.WORTH_REFINING * (best - first)]
     ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
     done = sorted(ends, key=lambda entry: -entry.evidence)
-    done[: decisions.ONCE_MORE] = thread_map(lambda entry: once_more(case, entry), done[: decisions.ONCE_MORE])
     found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})
+    strayed = [e for e in done[: decisions.ONCE_MORE] if is_astray(e.fit.hypothesis, decisions.ASTRAY_REFINED)]
+    keep_better(found, thread_map(lambda entry: once_more(case, entry), strayed))
     return True

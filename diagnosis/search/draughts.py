@@ -11,7 +11,6 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
-from diagnosis.search.fitting import once_more
 from diagnosis.validate.fitted_logs import FittedLogs
 from jobs.thread_map import thread_map
 from records.reasons import Decision
@@ -68,7 +67,7 @@ def _with_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | Non
     found = with_memory(case, fitted.fit)
     if found is fitted.fit:
         return fitted
-    told = once_more(case, as_fitted(case, found))
+    told = as_fitted(case, found)
     if told.evidence <= fitted.evidence:
         return fitted
     if beyond_noise(case, told.fit.hypothesis):

@@ -16,6 +16,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from jobs.thread_map import thread_map
 from sim.effect import Role
 
 Array = NDArray[np.float64]
@@ -48,19 +49,19 @@ def rough(case: Case, job: Job) -> FittedHypothesis | None:
     start = hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
     if _is_rough(case, entry.effect):
         start = _polished(case, start, entry.effect, POLISHING)
-    begun = _from_stated(case, start) if _is_astray(start, decisions.ASTRAY_FIRST) else None
+    begun = _from_stated(case, start) if is_astray(start, decisions.ASTRAY_FIRST) else None
     found = begun or fit(case, start, rounds=4)
     if found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
-    if begun is None and (found is None or _is_astray(found.hypothesis, decisions.ASTRAY_FIRST)):
+    if begun is None and (found is None or is_astray(found.hypothesis, decisions.ASTRAY_FIRST)):
         found = _likelier(found, _from_stated(case, start))
     if found is not None and holding(case.library, [entry.effect]):
         found = _at_its_level(case, found, entry.effect)
     return None if found is None or not _whole_counts(case, found) else as_fitted(case, found)
 
 
-def _is_astray(hypothesis: Hypothesis, limit: float) -> bool:
+def is_astray(hypothesis: Hypothesis, limit: float) -> bool:
     """Whether the parameters went so far, in mean square standard deviations."""
     return bool(hypothesis.theta @ hypothesis.theta > limit * len(hypothesis.theta))
 
@@ -97,18 +98,24 @@ def _rounder(case: Case, hypothesis: Hypothesis) -> list[Hypothesis]:
 
 
 def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
-    """The same begun once more from the parameters as stated, where they have gone far and that ends better.
-
-    Of a beginning under the process noise that it has, and one under that of before any log was seen, the likelier is fitted to its end:
-    a filter that expects any motion leads back from further off.
-    """
+    """The same begun once more by a filter that expects any motion, from where its parameters are and from where they are stated, where
+    that ends better: with little noise slopes lead to the next hill only, and noise with a memory holds it there."""
     hypothesis = fitted.fit.hypothesis
-    if not _is_astray(hypothesis, decisions.ASTRAY_REFINED):
-        return fitted
-    noisy = replace(hypothesis, process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE))
-    start = _likelier(*(_from_stated(case, begun) for begun in (hypothesis, noisy)))
+    open_to_all = replace(
+        hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if not case.library.effects[n].is_noise}),
+        process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE),
+        reading_noise={},
+    )
+    stated = replace(open_to_all, theta=np.zeros_like(hypothesis.theta))
+    start = _likelier(*thread_map(lambda begun: _begun(case, begun), (open_to_all, stated)))
     end = None if start is None else refined(case, as_fitted(case, start))
     return fitted if end is None or end.evidence <= fitted.evidence else end
+
+
+def _begun(case: Case, start: Hypothesis) -> Fit | None:
+    """A first fit, and one with the noise that it leaves."""
+    found = fit(case, start, rounds=4)
+    return None if found is None else fit(case, with_process_noise(beginning_of(case), found.hypothesis), rounds=3)
 
 
 def _is_rough(case: Case, name: str) -> bool:
@@ -180,8 +187,7 @@ def _lessened(case: Case, start: Hypothesis, effect: str) -> Hypothesis:
 def _from_stated(case: Case, start: Hypothesis) -> Fit | None:
     """The fit from the parameters as stated: where the nominal plant had gone far astray, nothing is found from there."""
     low_noise = np.minimum(start.process_noise, decisions.FIRST_PROCESS_NOISE)
-    found = fit(case, replace(start, theta=np.zeros_like(start.theta), process_noise=low_noise), rounds=4)
-    return None if found is None else fit(case, with_process_noise(beginning_of(case), found.hypothesis), rounds=3)
+    return _begun(case, replace(start, theta=np.zeros_like(start.theta), process_noise=low_noise))
 
 
 def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:
