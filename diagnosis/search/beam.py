@@ -185,10 +185,11 @@ def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> li
 
 
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
-    """Once more the best of all, and of each number of effects the best with its twins, until effects and all noise agree: a fit not yet at
-    its end would lose to one with an idle effect."""
+    """Once more the best of all with the twins of the first, until effects and all noise agree: a fit not yet at its end would lose to one
+    with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
-    asked = [frozenset(e.effects) for e in dict.fromkeys([*best[: decisions.SETTLED_FITS], *_finalists(case, best)])]
+    twins = [entry for entry in best if is_twin(case, entry, best[0])]
+    asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.SETTLED_FITS], *twins])]
     for step in (refined, once_more, with_own_events):
         ends = thread_map(lambda names, step=step: step(case, found[names]), asked)
         keep_better(found, [end for end in ends if end is not None])

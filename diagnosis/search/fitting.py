@@ -16,7 +16,6 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis
-from jobs.thread_map import thread_map
 from sim.effect import Role
 
 Array = NDArray[np.float64]
@@ -98,16 +97,17 @@ def _rounder(case: Case, hypothesis: Hypothesis) -> list[Hypothesis]:
 
 
 def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
-    """The same begun once more by a filter that expects any motion, from where its parameters are and from where they are stated, where
-    that ends better: with little noise slopes lead to the next hill only, and noise with a memory holds it there."""
+    """The same begun once more by a filter that expects any motion, and as stated where its parameters went far, where that ends better:
+    with little noise slopes lead to the next hill only, and noise with a memory holds it there."""
     hypothesis = fitted.fit.hypothesis
     open_to_all = replace(
         hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if not case.library.effects[n].is_noise}),
         process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE),
         reading_noise={},
     )
-    stated = replace(open_to_all, theta=np.zeros_like(hypothesis.theta))
-    start = _likelier(*thread_map(lambda begun: _begun(case, begun), (open_to_all, stated)))
+    start = _begun(case, open_to_all)
+    if is_astray(hypothesis, decisions.ASTRAY_REFINED):
+        start = _likelier(start, _begun(case, replace(open_to_all, theta=np.zeros_like(hypothesis.theta))))
     end = None if start is None else refined(case, as_fitted(case, start))
     return fitted if end is None or end.evidence <= fitted.evidence else end
 
