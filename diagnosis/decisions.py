@@ -210,11 +210,17 @@ WAVES_APART = Limit(0.12, "share", "waves that are closer are one", "seed 900014
 MOST_SINES = Count(3, "starts", "of a sine that are tried")
 MOST_INPUT_STEPS = Count(3, "starts", "of an input's steps that are tried")
 MOST_STARTS = Count(8, "starts", "of an effect's shapes that are scored")
+LEVEL_SHARES = Limits(
+    (0.5, 0.75, 0.9, 0.97, 0.995),
+    "shares of the time",
+    "levels that are tried of a limit: those below which the command stays so long; a peak may be a kick of a moment",
+    "seed 291 of the real family",
+)
 PEAK_SHARES = Limits(
-    (0.6, 0.75, 0.87, 0.96, 1.05, 1.2),
+    (1.05, 1.2),
     "shares of the largest input",
-    "at which a limit may lie; beyond it the rounded corner alone is reached",
-    "the last: seeds 900010 and 900011",
+    "and beyond it, where the corner alone is reached",
+    DEVELOPMENT,
 )
 FARTHEST_SIZE = Limit(30.0, "references", "a score test proposes no larger size")
 

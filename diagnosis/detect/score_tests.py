@@ -187,11 +187,12 @@ def _sizes(case: Case, linearisation: Linearisation, effect: Effect) -> list[flo
 
 
 def _levels(case: Case, _: Linearisation, effect: Effect) -> list[float]:
-    """Shares of an input's largest command."""
+    """What an input's command stays below for shares of the time, and a little more than its largest."""
     model = case.library.bound.model
     column = model.inputs.index(model.places.inputs[effect.place].variable)
-    peak = max(float(np.max(np.abs(flight.filter_input.u[:, column]))) for flight in case.flights)
-    return [share * peak for share in decisions.PEAK_SHARES if peak > 0.0]
+    sent = np.abs(np.concatenate([flight.filter_input.u[:, column] for flight in case.flights]))
+    levels = [*np.quantile(sent, decisions.LEVEL_SHARES), *np.multiply(decisions.PEAK_SHARES, np.max(sent))]
+    return [float(level) for level in dict.fromkeys(levels) if level > 0.0]
 
 
 def _steps(case: Case, linearisation: Linearisation, effect: Effect) -> list[float]:

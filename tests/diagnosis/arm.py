@@ -18,6 +18,7 @@ from tests.plants import bound
 from tests.soak import SOAK
 
 PERIOD_S = 0.01
+KICKED_S = 1.0
 LONG_S = 20.0  # of runs of which a number is asked that few rows do not tell; in a soak of all
 SECONDS = LONG_S if SOAK else 14.0
 
@@ -33,15 +34,17 @@ def arm_log(
     seed: int = 1,
     seconds: float = SECONDS,
     rows: int = 1,
+    kick_V: float = 0.0,
     **changed: float,
 ) -> RunLog:
     """A run in open loop under five sines of the input, held for so many rows each; nothing but the encoder and a little torque noise
-    disturbs it. The rig is as stated but for the parameters `changed`."""
+    disturbs it. The rig is as stated but for the parameters `changed`; each second one command is larger by `kick_V`."""
     rng = np.random.default_rng(seed)
     t_s = PERIOD_S * np.arange(round(seconds / PERIOD_S))
     rates, phases = rng.uniform(0.5, 6.0, 5), rng.uniform(0.0, 2.0 * np.pi, 5)
     u = 1.8 + 0.28 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)
     u = np.repeat(u[::rows], rows)[: len(t_s)]
+    u[:: round(KICKED_S / PERIOD_S)] += kick_V
     plain = bound("aeroshield", **changed) if changed else arm()
     rig = with_effects(plain, effects) if effects else plain
     process = np.zeros(len(rig.model.states))
