@@ -93,4 +93,5 @@ def _error_facts(bound: BoundPlant, error: StepError) -> dict[str, dict[str, flo
 def _error_told(bound: BoundPlant, error: StepError) -> str:
     each = zip(bound.model.outputs, error.estimate.tolist(), strict=True)
     told = ", ".join(f"{output} {value:.1e} {unit_of(output)}".rstrip() for output, value in each)
-    return f"error of one integration step a sample, by halving it: {told}"
+    steps = "one integration step" if error.substeps == 1 else f"{error.substeps} integration steps"
+    return f"error of {steps} a sample, by halving: {told}"

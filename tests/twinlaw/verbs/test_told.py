@@ -72,4 +72,4 @@ def test_simulate_flies_and_tells_the_error_of_its_integration(
 @pytest.mark.soak
 def test_simulate_says_the_same_to_a_person(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "--out", str(tmp_path)]) == 0
-    assert "error of one integration step a sample, by halving it: psi_rad" in capsys.readouterr().out
+    assert "error of one integration step a sample, by halving: psi_rad" in capsys.readouterr().out

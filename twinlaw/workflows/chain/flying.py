@@ -3,7 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from controllers import loading
+from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import RunLog
 from records.loops import LOOPS
@@ -20,6 +23,10 @@ from sim.wiring import wiring
 from twinlaw.cli.console import stage
 from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
+
+MOST_SUBSTEPS = (
+    64  # of 10 ms: a time constant of 60 us; an amplifier's own is shorter, and no part of a plant that moves
+)
 
 
 @dataclass(frozen=True)
@@ -49,11 +56,23 @@ def flight_of(bound: BoundPlant, table: FlownTable) -> Manoeuvre:
 
 
 def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
-    """A run of the plant without a loop, every input changed in steps, and the error of its integration."""
-    moved = stir(bound)
+    """A run of the plant without a loop, every input changed in steps, and the error of its integration, in as many steps a sample as its
+    fastest state needs; raises BadInput where MOST_SUBSTEPS are too few."""
+    moved, substeps = stir(bound), 1
     with stage("stirring the plant without a loop"):
-        run = simulate(bound, moved.t_s, moved.x0, moved.u, keep="y")
         error = step_error(bound, moved.t_s, moved.x0, moved.u)
+        while not np.isfinite(error.difference).all():
+            substeps *= 2
+            if substeps > MOST_SUBSTEPS:
+                raise BadInput(
+                    f"plant of {bound.plant.model}",
+                    "simulation",
+                    f"outputs that leave all bounds, in steps of {1e3 * moved.t_s[1] / MOST_SUBSTEPS:.2g} ms",
+                    "a plant that stays finite while its inputs change",
+                    "check units and signs, or leave out a state that is so fast",
+                )
+            error = step_error(bound, moved.t_s, moved.x0, moved.u, substeps=substeps)
+        run = simulate(bound, moved.t_s, moved.x0, moved.u, substeps=substeps, keep="y")
     assert run.y is not None
     return RunLog(log_columns(bound.model), float(moved.t_s[1]), "open", moved.t_s, moved.u, run.y), error
 
