@@ -80,7 +80,7 @@ def test_the_twin_of_the_best_is_tried_in_its_place(plant: BoundPlant, fly: Fly)
     case = make_case(effect_library(plant), [fly(44, {"psi_sensor.lag": {"tau": 0.06}}, air=False)])
     late = fitted(case, nominal_fit(case), {"psi_sensor.delay": {"tau": 0.05, "jitter": 0.0}})
     found = {frozenset(late.effects): late}
-    fit_twins(case, found)
+    fit_twins(case, found, late)
     best = max(found.values(), key=lambda entry: entry.evidence)
     assert best.effects == ("psi_sensor.lag",)
     assert best.fit.hypothesis.effects["psi_sensor.lag"]["tau"] == pytest.approx(0.06, abs=0.003)
