@@ -219,8 +219,8 @@ LEVEL_SHARES = Limits(
 PEAK_SHARES = Limits(
     (1.05, 1.2),
     "shares of the largest input",
-    "and beyond it, where the corner alone is reached",
-    DEVELOPMENT,
+    "at which a limit may lie beyond all commands: its rounded corner alone is reached",
+    "the last: seeds 900010 and 900011",
 )
 FARTHEST_SIZE = Limit(30.0, "references", "a score test proposes no larger size")
 

@@ -76,7 +76,7 @@ def alone(
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
     least = max(decisions.LEAST_GAIN, decisions.LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
     jobs = _promising(nominal, score_tests, least)[: decisions.SINGLES]
-    jobs += _promising(nominal, from_stated(case, nominal), least)[: decisions.SINGLES]
+    jobs += _promising(nominal, scored_as_stated(case, nominal), least)[: decisions.SINGLES]
     _fit_all(case, jobs, found, first)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
@@ -85,7 +85,7 @@ def alone(
     return Alone(found, first, worth, linearisation, tuple(score_tests))
 
 
-def from_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
+def scored_as_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
     """Score tests from the plant as stated, by a filter that expects any motion, where the nominal plant went astray: its parameters took
     the part of what is missing then, which shows nothing beside them."""
     if not is_astray(nominal.hypothesis, decisions.ASTRAY_FIRST):

@@ -10,7 +10,7 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.search.beam import from_stated
+from diagnosis.search.beam import scored_as_stated
 from diagnosis.search.fitting import once_more, refined
 from tests.diagnosis.arm import arm_case, arm_log
 
@@ -36,11 +36,11 @@ def ended(case: Case) -> FittedHypothesis:
 def test_a_plant_gone_astray_is_scored_as_stated(case: Case) -> None:
     plain = nominal_fit(case)
     bent = replace(plain, hypothesis=replace(plain.hypothesis, theta=np.full_like(plain.hypothesis.theta, 4.0)))
-    seen = from_stated(case, bent)
+    seen = scored_as_stated(case, bent)
     assert seen[0].effect == "input.saturation"
     assert seen[0].values["limit"] == pytest.approx(2.1, rel=0.1)
     upright = replace(plain, hypothesis=replace(plain.hypothesis, theta=0.5 * np.ones_like(plain.hypothesis.theta)))
-    assert from_stated(case, upright) == []
+    assert scored_as_stated(case, upright) == []
 
 
 def test_a_fit_on_a_lower_hill_finds_the_higher_one(case: Case, ended: FittedHypothesis) -> None:
