@@ -133,7 +133,6 @@ def test_a_fit_gone_astray_is_begun_once_more_from_the_plant_as_stated(plant: Bo
     # Truth: a motor that loses a fifth of its pull; the fit that is given has every parameter four deviations off.
     case = make_case(effect_library(plant), [fly(63, WARMING, rig_seed=63, air=False)])
     near = fitted(case, nominal_fit(case), WARMING)
-    assert once_more(case, near).evidence >= near.evidence
     hypothesis = replace(near.fit.hypothesis, theta=np.full_like(near.fit.hypothesis.theta, 4.0))
     strayed = replace(near, fit=replace(near.fit, hypothesis=hypothesis), evidence=near.evidence - 1000.0)
     found = once_more(case, strayed)
