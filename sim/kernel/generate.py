@@ -1,11 +1,12 @@
 """A model's equations as the C header `model.h` that the fixed kernels of sim/kernel/c include; a pure function of the model."""
 
 import itertools
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import sympy
+from numpy.typing import NDArray
 
 from sim.model import TIME, Model, acceleration
 from sim.symbolic.assignments import Constants, assignments, constant_lines, entries
@@ -92,11 +93,16 @@ def _index_tables(model: Model) -> list[str]:
 
 
 def _pattern_tables(model: Model) -> list[str]:
-    """Which entries of A = df/dx, and of 1 + h A + h^2 A^2 / 2, and which rows of D = df/dp and E = dy/dp are not identically zero."""
+    """Which entries of A = df/dx, and of a step's F, and which rows of D = df/dp and E = dy/dp are not identically zero; which states
+    follow others. F is 1 + h A + h^2 A^2 / 2, and for states that follow A times that."""
     A = np.zeros((len(model.states), len(model.states)), dtype=bool)
-    for place in jacobian(model.state_rates(), model.states).todok():
+    slopes = jacobian(model.state_rates(), model.states).todok()
+    for place in slopes:
         A[place] = True
-    patterns = {"A_HAS": A, "F_HAS": np.eye(len(A), dtype=bool) | A | (A @ A)}
+    follows = _follows(model, A, slopes)
+    F = np.eye(len(A), dtype=bool) | A | (A @ A)
+    F[follows] |= (A @ F)[follows]
+    patterns = {"A_HAS": A, "F_HAS": F}
     rows = {
         name: ", ".join(f"{{{', '.join(map(str, row))}}}" for row in has.astype(int)) for name, has in patterns.items()
     }
@@ -108,7 +114,19 @@ def _pattern_tables(model: Model) -> list[str]:
     return [
         *(f"static const int {name}[N_STATES][N_STATES] = {{{text}}};" for name, text in rows.items()),
         *(f"static const int {name}[] = {{{', '.join(map(str, has))}}};" for name, has in by_row.items()),
+        f"static const int FOLLOWS[] = {{{', '.join(map(str, follows.astype(int)))}}};",
     ]
+
+
+def _follows(model: Model, A: NDArray[np.bool_], slopes: Mapping[tuple[int, int], sympy.Expr]) -> NDArray[np.bool_]:
+    """Which states follow others at a rate that is known, x' = g - rate x, and are followed by none, as what a lagging sensor reads."""
+    moving = {*model.states, *model.inputs, *model.friction_signs, TIME}
+    return np.array(
+        [
+            bool(A[row, row]) and A[:, row].sum() == 1 and not symbols_of(slopes[row, row]) & moving
+            for row in range(len(A))
+        ]
+    )
 
 
 def _bound(stop: sympy.Expr | None, absent: sympy.Expr) -> sympy.Expr:

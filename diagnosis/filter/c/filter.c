@@ -13,6 +13,7 @@
 #include "events.h"
 #include "step.h"
 
+#include "follow.h"
 #include "slopes.h"
 #include "states.h"
 
@@ -37,6 +38,7 @@ typedef struct {
     matrix P, A, square, F, FP, PF; /* the last five are worked with within a step */
     /* Rows and columns of matrices are 0 where a state sleeps, but F's are those of 1, and are left alone. */
     awake_states states;
+    follow_state following[N];
     filter_slopes slopes;
 } filter_state;
 
@@ -48,6 +50,7 @@ static void start(filter_state *at, filter_request *request)
     wake(&at->states, request);
     start_slopes(&at->slopes, request);
     for (int i = 0; i < N; i++) {
+        at->following[i].z = -1.0;
         at->body.x[i] = request->x0[i];
         for (int j = 0; j < WIDTH; j++) {
             at->A[i][j] = at->square[i][j] = at->FP[i][j] = at->PF[i][j] = 0.0;
@@ -171,6 +174,24 @@ static void transition(filter_state *at, double h_s)
     }
 }
 
+/* The rows of F of states that follow, once those of all others are there. */
+static void follow_transition(filter_state *at)
+{
+    UNROLLED for (int i = 0; i < N; i++) {
+        if (!FOLLOWING(at->states, i))
+            continue;
+        const follow_weights w = at->following[i].whole;
+        UNROLLED for (int k = 0; k < N; k++) {
+            double sum = 0.0;
+            UNROLLED for (int m = 0; m < N; m++)
+                if (m != i && A_HAS[i][m])
+                    sum += at->A[i][m] * (w.last * at->F[m][k] + (m == k ? w.first : 0.0));
+            if (F_HAS[i][k])
+                at->F[i][k] = i == k ? w.kept : sum;
+        }
+    }
+}
+
 /* P = F P F' + noise */
 static void spread(filter_state *at, const double *noise)
 {
@@ -191,13 +212,21 @@ static void spread(filter_state *at, const double *noise)
  * and however far behind the speed, a variance below zero. */
 static void stir(filter_state *at, int v, double h_s, double noise)
 {
-    static const double INSTANT[2] = {0.21132486540518712, 0.78867513459481288}; /* 1/2 -+ 1/sqrt(12) */
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < INSTANTS; k++) {
         const double t_s = INSTANT[k] * h_s;
         double g[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0};
         for (int n = 0; n < at->states.awake; n++) {
             const int i = at->states.order[n];
             g[i] = (i == v) + t_s * (at->A[i][v] + 0.5 * t_s * at->square[i][v]);
+        }
+        for (int i = 0; i < N; i++) {
+            if (!FOLLOWING(at->states, i))
+                continue;
+            const follow_weights w = at->following[i].until[k];
+            g[i] = 0.0;
+            for (int m = 0; m < N; m++)
+                if (m != i && A_HAS[i][m])
+                    g[i] += at->A[i][m] * (w.last * g[m] + (m == v ? w.first : 0.0));
         }
         for (int n = 0; n < at->states.awake; n++) {
             const int i = at->states.order[n];
@@ -266,6 +295,29 @@ static void empty_rows(const bool *chosen, double *rows, int width)
             rows[AXIS_VELOCITY[a] * width + k] = 0.0;
 }
 
+/* Where states that follow others are after a step from `before`; `slopes_A` are those at its middle. */
+static void follow(filter_state *at, const plant_body *before, double t_s, double h_s, const double *slopes_A)
+{
+    bool any_follows = false;
+    for (int i = 0; i < N; i++)
+        any_follows |= FOLLOWING(at->states, i);
+    if (!any_follows)
+        return;
+    double rates[N], torque[AXES], up[AXES], down[AXES];
+    follow_over(at->following, &at->states, slopes_A, h_s);
+    model_rates(t_s, before->x, at->u, at->c, before->sign, before->move, rates, torque, up, down);
+    for (int i = 0; i < N; i++) {
+        if (!FOLLOWING(at->states, i))
+            continue;
+        const follow_weights w = at->following[i].whole;
+        double g = rates[i] - slopes_A[i * N + i] * before->x[i], changed = 0.0;
+        for (int m = 0; m < N; m++)
+            if (m != i && A_HAS[i][m])
+                changed += slopes_A[i * N + m] * (at->body.x[m] - before->x[m]);
+        at->body.x[i] = w.kept * before->x[i] + (w.first + w.last) * g + w.last * changed;
+    }
+}
+
 /* One piece of a step, `share` of it, from t_s on. */
 static void advance(filter_state *at, int64_t step, double t_s, double h_s, double share)
 {
@@ -298,6 +350,10 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
         held[a] = at->body.move[a] == 0.0;
     jacobians *const j = &at->j;
     model_state_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->A);
+    follow(at, &before, t_s, h_s, j->A);
+    for (int i = 0; i < N; i++)
+        if (FOLLOWING(at->states, i))
+            middle[i] = 0.5 * (before.x[i] + at->body.x[i]);
     if (r->columns)
         model_parameter_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->D);
     empty_rows(rests, j->A, N);
@@ -306,10 +362,11 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
     for (int i = 0; i < N; i++)
         if (kept[i] < 1.0)
             at->F[i][i] = kept[i];
+    follow_transition(at);
     /* The mean stays where friction holds it, however unsure its speed is: parameters move nothing there. */
     empty_rows(held, j->A, N);
     empty_rows(held, j->D, N_PARAMETERS);
-    move_slopes(&at->slopes, r, &at->states, h_s, j->A, j->D, kept);
+    move_slopes(&at->slopes, r, &at->states, h_s, j->A, j->D, kept, at->following);
     for (int a = 0; a < N_AXES; a++) {
         if (held[a])
             hold_slopes(&at->slopes, r, AXIS_VELOCITY[a]);
@@ -331,12 +388,13 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
     }
 }
 
-/* How many pieces a step is done in: as many as the fastest state, noise with a memory apart, needs for series that end at h^2. */
+/* How many pieces a step is done in: as many as the fastest state needs for series that end at h^2, but for noise with a memory and states
+ * that follow. */
 static int pieces_of(const filter_state *at, double h_s)
 {
     double fastest = 0.0;
     for (int i = 0; i < N; i++)
-        if (AWAKE(at->states, i) && at->request->forget[i] == 0.0)
+        if (AWAKE(at->states, i) && !FOLLOWING(at->states, i) && at->request->forget[i] == 0.0)
             fastest = fmax(fastest, fabs(at->j.A[i * N + i]));
     return (int)fmin(fmax(ceil(h_s * fastest / FASTEST), 1.0), MOST_PIECES);
 }

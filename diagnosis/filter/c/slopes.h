@@ -3,6 +3,7 @@
 #ifndef SLOPES_H
 #define SLOPES_H
 
+#include "follow.h"
 #include "states.h"
 
 #define BLOCKS (MAX_COLUMNS / BLOCK)
@@ -95,10 +96,11 @@ static void correct_slopes(filter_slopes *at, const filter_request *r, const awa
         multiply(at, r);
 }
 
-/* The slopes one step on: S + h (1 + h A / 2) (A S + D), those of noise with a memory by what is kept of it. `by` are the rates' own
- * slopes by all parameters. */
+/* The slopes one step on: S + h (1 + h A / 2) (A S + D), those of noise with a memory by what is kept of it, those of states that follow by
+ * their weights. `by` are the rates' own slopes by all parameters. */
 static void move_slopes(filter_slopes *at, const filter_request *r, const awake_states *restrict states, double h_s,
-                        const double *restrict A, const double *restrict by, const double *restrict kept)
+                        const double *restrict A, const double *restrict by, const double *restrict kept,
+                        const follow_state *restrict following)
 {
     UNROLLED for (int i = 0; i < N; i++)
         if (D_HAS[i] && AWAKE(*states, i))
@@ -114,13 +116,23 @@ static void move_slopes(filter_slopes *at, const filter_request *r, const awake_
                     rates[i] += A[i * N + m] * S[m];
         }
         UNROLLED for (int i = 0; i < N; i++) {
-            if (!AWAKE(*states, i))
+            if (FOLLOWING(*states, i) || !AWAKE(*states, i))
                 continue;
             block second = {0.0};
             UNROLLED for (int m = 0; m < N; m++)
                 if (A_HAS[i][m])
                     second += A[i * N + m] * rates[m];
             S[i] = kept[i] < 1.0 ? kept[i] * S[i] : S[i] + h_s * (rates[i] + 0.5 * h_s * second);
+        }
+        UNROLLED for (int i = 0; i < N; i++) {
+            if (!FOLLOWING(*states, i))
+                continue;
+            const follow_weights w = following[i].whole;
+            block last = at->D[i][b];
+            UNROLLED for (int m = 0; m < N; m++)
+                if (m != i && A_HAS[i][m])
+                    last += A[i * N + m] * S[m];
+            S[i] = w.kept * S[i] + w.first * (rates[i] - A[i * N + i] * S[i]) + w.last * last;
         }
     }
 }

@@ -14,14 +14,16 @@ typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_ali
 #define WIDTH (ROW * BLOCK)
 typedef double matrix[N][WIDTH] __attribute__((aligned(sizeof(block)))); /* N by N, its rows filled up with zeros to whole blocks */
 
-/* States of effects that are off sleep: nothing moves them, and what is known of them is 0. */
+/* States of effects that are off sleep: nothing moves them, and what is known of them is 0. Those that follow others (follow.h) are no
+ * noise, which forgets. */
 typedef struct {
-    bool sleeps[N], empty[ROW];
+    bool sleeps[N], follows[N], empty[ROW];
     int order[N], awake; /* the states that do not sleep */
 } awake_states;
 
 /* What never sleeps the compiler knows. */
 #define AWAKE(states, i) (STATE_SWITCH[i] < 0 || !(states).sleeps[i])
+#define FOLLOWING(states, i) (FOLLOWS[i] && (states).follows[i])
 #define FILLED(states, b) (!(states).empty[b])
 
 static void wake(awake_states *states, const filter_request *request)
@@ -31,6 +33,7 @@ static void wake(awake_states *states, const filter_request *request)
         states->empty[b] = true;
     for (int i = 0; i < N; i++) {
         states->sleeps[i] = STATE_SWITCH[i] >= 0 && request->p[STATE_SWITCH[i] < 0 ? 0 : STATE_SWITCH[i]] == 0.0;
+        states->follows[i] = FOLLOWS[i] && !states->sleeps[i] && request->forget[i] == 0.0;
         states->empty[i / BLOCK] &= states->sleeps[i];
         if (!states->sleeps[i])
             states->order[states->awake++] = i;

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
@@ -99,6 +100,29 @@ def test_sure_readings_of_a_late_sensor_leave_no_variance_below_zero() -> None:
     (run,) = passes(arm.case.with_flights([replace(flight, filter_input=sure)]), late) or [None]
     assert run is not None
     assert np.nanmin(run.s) > 1e-12 * flight.filter_input.r.min()
+
+
+def lagged(t_s: np.ndarray, y: np.ndarray, tau_s: float) -> np.ndarray:
+    """tau y' = x - y by small steps along straight lines between the readings x."""
+    fine_s = np.linspace(t_s[0], t_s[-1], 100 * (len(t_s) - 1) + 1)
+    x, kept = np.interp(fine_s, t_s, y), np.exp(-(fine_s[1] - fine_s[0]) / tau_s)
+    return lfilter([1.0 - kept], [1.0, -kept], x, zi=[kept * x[0]])[0][::100]
+
+
+@pytest.mark.parametrize("lag_rows", [0.3, 1.0, 10.0])
+def test_a_late_sensor_is_as_likely_with_rows_as_with_instants_between_them(
+    library: EffectLibrary, settled: Hypothesis, fly: Fly, lag_rows: float
+) -> None:
+    # A lag, however short beside a row, is exact within a step: cut into ten, rows are as likely within a nat, which decides nothing.
+    log, tau_s = fly(1, seconds=LONG_S), 0.01 * lag_rows
+    case = make_case(library, [replace(log, y=np.column_stack([lagged(log.t_s, log.y[:, 0], tau_s), log.y[:, 1]]))])
+    (flight,) = case.flights
+    t_s, u = flight.filter_input.t_s, flight.filter_input.u
+    between = np.sort(np.concatenate([t_s[:-1] + k / 10 * np.diff(t_s) for k in range(10)] + [t_s[-1:]]))
+    cut = spread(flight.filter_input, between, np.repeat(u, 10, axis=0)[:-9])
+    supposed = settled.with_effects({"psi_sensor.lag": {"tau": tau_s}})
+    values = [likelihood_of(c, supposed) for c in (case, case.with_flights([replace(flight, filter_input=cut)]))]
+    assert values[0] == pytest.approx(values[1], abs=1.0)
 
 
 @pytest.mark.parametrize("sensor", ["psi_sensor", "phi_sensor"])
