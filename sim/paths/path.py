@@ -101,13 +101,14 @@ def in_held_steps(x: Array, step: float, hold: float, level: float | None) -> tu
     nearest = in_steps(x, step)
     if hold == 0.0:
         return nearest, float(nearest[-1])
-    away, y = (0.5 + hold) * step, np.empty(len(x))
+    away, y = (0.5 + hold) * step, list[float]()
     at = float(nearest[0]) if level is None else level
-    for k, (wanted, there) in enumerate(zip(x.tolist(), nearest.tolist(), strict=True)):
-        if abs(wanted - at) > away:
-            at = there
-        y[k] = at
-    return y, at
+    lower, upper = at - away, at + away  # compared without a call or an array: a fit asks for thousands of logs
+    for wanted, there in zip(x.tolist(), nearest.tolist(), strict=True):
+        if wanted > upper or wanted < lower:
+            at, lower, upper = there, there - away, there + away
+        y.append(at)
+    return np.array(y), at
 
 
 def in_held_steps_of_each(x: Array, steps: Array, hold: float) -> Array:

@@ -247,31 +247,38 @@ static void halve(filter_state *at, const double *kept, double *noise)
     }
 }
 
-/* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. At rest, where the
- * speed's row is emptied, the doubt is that of `rest_s` however long the step, so that instants more or less change nothing. */
+/* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. */
 static void doubt(const filter_state *at, const double *level, double h_s, double *noise)
 {
     for (int a = 0; a < N_AXES; a++) {
         const int v = AXIS_VELOCITY[a];
         const double rub = at->request->rub[a], square = level[a] * level[a];
         const double rest_s = at->request->rest_s, width = square * rest_s * rest_s + at->P[v][v];
-        const double lasts_s = at->body.move[a] == 0.0 ? rest_s : h_s;
         if (square > 0.0 && rub > 0.0)
-            noise[v] += square * lasts_s * rub * quick_exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
+            noise[v] += square * h_s * rub * quick_exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
     }
 }
 
 /* Which axes are taken to rest: held by a stop, or by friction that could have stopped what is known of their speed. Where a flight
  * begins nothing is, and an axis that the first guess holds may well be moving: to take it as sure would keep all later readings out. */
-static void resting(const filter_state *at, const double *level, const double *noise, bool *rests)
+static void resting(const filter_state *at, const double *level, double h_s, const double *noise, bool *rests)
 {
     for (int a = 0; a < N_AXES; a++) {
         const int v = AXIS_VELOCITY[a];
         const double position = at->body.x[AXIS_POSITION[a]], stopped = level[a] * at->request->rest_s;
         const bool rubs = level[a] > 0.0 && !at->request->locked[a] && position > at->c[AXIS_LOWER[a]] && position < at->c[AXIS_UPPER[a]];
-        const bool unsure = rubs && at->P[v][v] > UNSURE * UNSURE * (noise[v] + stopped * stopped);
+        const double usual = noise[v] * at->request->rest_s / h_s;
+        const bool unsure = rubs && at->P[v][v] > UNSURE * UNSURE * (usual + stopped * stopped);
         rests[a] = at->body.move[a] == 0.0 && !unsure;
     }
+}
+
+/* The column of F by which a speed moves all other states, times a factor. */
+static void scale_column(filter_state *at, int v, double factor)
+{
+    for (int n = 0; n < at->states.awake; n++)
+        if (at->states.order[n] != v)
+            at->F[at->states.order[n]][v] *= factor;
 }
 
 /* What is left over a step of each state that is noise with a memory, exactly: rows may be further apart than it lasts. Others keep all. */
@@ -345,7 +352,7 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
             at->body.x[i] = kept[i] * before.x[i];
     for (int i = 0; i < N; i++)
         middle[i] = 0.5 * (before.x[i] + at->body.x[i]);
-    resting(at, level, noise, rests);
+    resting(at, level, h_s, noise, rests);
     for (int a = 0; a < N_AXES; a++)
         held[a] = at->body.move[a] == 0.0;
     jacobians *const j = &at->j;
@@ -373,18 +380,27 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
         if (r->locked[a])
             noise[AXIS_VELOCITY[a]] = 0.0;
     }
-    /* What an axis at rest loses by its emptied row all comes after, so that instants more or less change nothing. */
+    /* Friction stops within the usual step whatever moves an axis at rest: the row of its speed is emptied, and all that is unknown of that
+     * comes after. That is what the usual step brings, however long this one was, and moves the other states by the root of time, as steps
+     * that know nothing of one another do: so instants more or less change nothing. */
+    const double usual = r->rest_s / h_s;
     double jolts[AXES] = {0.0}, stays[AXES] = {0.0};
     for (int a = 0; a < N_AXES; a++) {
-        (rests[a] ? stays : jolts)[a] = noise[AXIS_VELOCITY[a]];
-        noise[AXIS_VELOCITY[a]] = 0.0;
+        const int v = AXIS_VELOCITY[a];
+        if (rests[a])
+            scale_column(at, v, sqrt(usual));
+        (rests[a] ? stays : jolts)[a] = noise[v] * (rests[a] ? usual : 1.0);
+        noise[v] = 0.0;
     }
     halve(at, kept, noise);
     spread(at, noise);
     for (int a = 0; a < N_AXES; a++) {
-        at->P[AXIS_VELOCITY[a]][AXIS_VELOCITY[a]] += stays[a];
+        const int v = AXIS_VELOCITY[a];
+        at->P[v][v] += stays[a];
+        if (rests[a])
+            scale_column(at, v, 1.0 / sqrt(usual));
         if (jolts[a] > 0.0)
-            stir(at, AXIS_VELOCITY[a], h_s, jolts[a]);
+            stir(at, v, h_s, jolts[a]);
     }
 }
 

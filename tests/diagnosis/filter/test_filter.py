@@ -126,9 +126,12 @@ def test_a_late_sensor_is_as_likely_with_rows_as_with_instants_between_them(
 
 
 @pytest.mark.parametrize("sensor", ["psi_sensor", "phi_sensor"])
-def test_further_instants_change_nothing(stuck: tuple[Case, Hypothesis], sensor: str) -> None:
-    # A delay of 10 us gives each reading an instant of its own: the likelihood moves by less than half a nat, though the azimuth sticks.
+@pytest.mark.parametrize("restless", [0.0, 2.0])
+def test_further_instants_change_nothing(stuck: tuple[Case, Hypothesis], sensor: str, restless: float) -> None:
+    # A delay of 10 us gives each reading an instant of its own: the likelihood moves by less than half a nat, though the azimuth sticks,
+    # and were its process noise a hundredfold.
     case, hypothesis = stuck
+    hypothesis = replace(hypothesis, process_noise=hypothesis.process_noise + restless)
     (plain,) = passes(case, hypothesis) or [None]
     (late,) = passes(
         case, hypothesis.with_effects({**hypothesis.effects, f"{sensor}.delay": {"tau": 1e-5, "jitter": 0.0}})
