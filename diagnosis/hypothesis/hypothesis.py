@@ -19,10 +19,9 @@ from jobs.thread_map import thread_map
 from sim.effect import Effect, Role, Values
 
 Array = NDArray[np.float64]
-SHORTEST_LAG_S = 4e-3  # a shorter one is too stiff for the filter's steps
+SHORTEST_LAG_S = 1e-6  # a shorter one is none: to it equations are divided by it
 START_SD = 0.05  # of states that effects brought, in their own units
 ELSEWHERE = -1  # instead of a log's number: all logs that have no values of their own
-LEAST_PROCESS = 1e-12  # of the noise intensity of states that are none of an axis' speeds, times their square
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +162,7 @@ def _sent(
 def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothesis: Hypothesis) -> Noise:
     """The filter's noise: on each axis' speed its process noise, on effects that are noise their own, next to none elsewhere."""
     x0, p0 = start_under(compiled, flight)
-    q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
+    q = np.zeros(len(x0))
     q[list(case.library.velocities)] = 10.0 ** (2.0 * hypothesis.process_noise)
     forget = np.zeros_like(q)
     for name, values in hypothesis.effects.items():

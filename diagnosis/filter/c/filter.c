@@ -21,7 +21,7 @@
 #define PIECES_ALLOWED 200 /* of the motion between events, */
 #define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
 
-#define FASTEST 0.5     /* of a state's own time constant that a piece of a step may last, */
+#define FASTEST 0.5     /* of a state's own time constant, or of a radian's time of a swing, that a piece of a step may last, */
 #define MOST_PIECES 8.0 /* but for so many: beyond, nothing is left of it anyway */
 
 /* Entries that are identically zero are never written, so these are emptied once a run. */
@@ -404,14 +404,21 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
     }
 }
 
-/* How many pieces a step is done in: as many as the fastest state needs for series that end at h^2, but for noise with a memory and states
- * that follow. */
+/* How many pieces a step is done in: as many as the fastest state, and the fastest two that swing against each other, need for series that
+ * end at h^2; but for noise with a memory and states that follow. */
 static int pieces_of(const filter_state *at, double h_s)
 {
-    double fastest = 0.0;
-    for (int i = 0; i < N; i++)
-        if (AWAKE(at->states, i) && !FOLLOWING(at->states, i) && at->request->forget[i] == 0.0)
-            fastest = fmax(fastest, fabs(at->j.A[i * N + i]));
+    const double *const A = at->j.A;
+    double fastest = 0.0, swinging = 0.0;
+    UNROLLED for (int i = 0; i < N; i++) {
+        if (!AWAKE(at->states, i) || FOLLOWING(at->states, i) || at->request->forget[i] > 0.0)
+            continue;
+        fastest = fmax(fastest, fabs(A[i * N + i]));
+        UNROLLED for (int k = 0; k < i; k++)
+            if (A_HAS[i][k] && A_HAS[k][i])
+                swinging = fmax(swinging, fabs(A[i * N + k] * A[k * N + i]));
+    }
+    fastest = fmax(fastest, sqrt(swinging));
     return (int)fmin(fmax(ceil(h_s * fastest / FASTEST), 1.0), MOST_PIECES);
 }
 

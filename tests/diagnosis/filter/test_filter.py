@@ -21,6 +21,7 @@ from diagnosis.validate.prediction import predictions
 from records.log import RunLog
 from sim.bind import BoundPlant, evaluated
 from sim.columns import log_columns
+from sim.effect import Role
 from sim.simulate import Noise, simulate
 from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
@@ -140,6 +141,22 @@ def test_further_instants_change_nothing(stuck: tuple[Case, Hypothesis], sensor:
     assert late is not None
     assert np.mean(np.abs(np.diff(case.flights[0].log.y[:, 1])) == 0.0) > 0.15
     assert late.log_likelihood == pytest.approx(plain.log_likelihood, abs=0.5)
+
+
+def test_an_effect_of_no_size_is_as_likely_as_none(case: Case, settled: Hypothesis) -> None:
+    # Each effect at no size, its shapes where a search ends, is the plant alone: within two nats, which no rule decides by, whichever
+    # library it is compiled in. Coarse readings are read anew, and a delay that scatters has a size.
+    library, plain = case.library, likelihood_of(case, settled)
+    for name in library.candidates:
+        effect = library.effects[name]
+        if effect.shown_in_readings or effect.having(Role.JITTER):
+            continue
+        values = {
+            p.symbol: p.zero if p.is_size and p.zero is not None else (p.starts or (p.reference,))[-1]
+            for p in effect.parameters
+        }
+        none = settled.with_effects({**settled.effects, name: values})
+        assert likelihood_of(case, none) == pytest.approx(plain, abs=2.0), name
 
 
 def changed(case: Case, hypothesis: Hypothesis, name: str) -> tuple[Pass, np.ndarray, np.ndarray]:
