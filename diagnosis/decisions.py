@@ -364,19 +364,6 @@ LEAST_PREFERRED = Limit(0.02, "probability", "a less probable name is not asked:
 FARTHEST_LOGIT = Limit(
     6.0, "logits", "surer weights are told to the learned law as this: evidence of dense readings is too sure"
 )
-LITTLE_LEFT = Limit(
-    0.1,
-    "share of the gap's evidence",
-    "the hold-out overrules an unknown effect where no more is left beside the best name: real rigs always "
-    "leave a little",
-    "real rigs; development cases of the sealed generator, seeds 21 and 22",
-)
-NEARLY_ALL_GONE = Limit(
-    0.85,
-    "share of the removable error",
-    "and so much is gone there",
-    "real rigs; development cases of the sealed generator, seeds 21 and 22",
-)
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
 LIKELIER_THAN_NOT = Limit(0.5, "probability", "likelier than all else together")
 NO_FAVOUR = Limit(0.0, "1", "as much speaks for a name as against it")

@@ -13,7 +13,7 @@ from diagnosis.answer import gap, no_gap
 from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred, surely_better
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred, surely_better
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, first_share, likeliest, weigh
@@ -34,6 +34,7 @@ from diagnosis.search.draughts import Draught, beyond_noise, draught, gust_share
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
+from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
 from records.reasons import Decision, Note
 from sim.added_effects import without_effects
@@ -235,13 +236,14 @@ def _alone(seen: Seen) -> Alone:
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
-    begun, weighed, left, holdout = _ranked(seen, material, found, beyond)
+    logs = FittedLogs(seen.case)
+    begun, weighed, holdout = _ranked(seen, material, found, beyond, logs)
     wider = found if not weighed.fitted else with_twins(seen.case, found, weighed.fitted[0])
     if wider is not found:
         found = wider
-        begun, weighed, left, holdout = _ranked(seen, material, found, beyond)
+        begun, weighed, holdout = _ranked(seen, material, found, beyond, logs, holdout)
     seen, retuned = begun, seen.retuned
-    weighed, told, rules = _favoured(seen, holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
+    weighed, told, rules = _favoured(holdout, weighed)
     doubts = doubt(seen.case, found, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *told)
     share = first_share(seen.case, weighed)
@@ -254,50 +256,57 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
 
 
 def _ranked(
-    seen: Seen, material: Material, found: Search, beyond: Retune | None
-) -> tuple[Seen, Weighed, float, Holdout | None]:
-    """What was found by what the logs and the hold-out say of it, with what forms still gain beside the best, and the hold-out."""
-    left, weighed = _weighed(seen, found, beyond)
-    weighed, idle = without_idle(seen.case, weighed, found.fitted)
+    seen: Seen,
+    material: Material,
+    found: Search,
+    beyond: Retune | None,
+    logs: FittedLogs,
+    known: Holdout | None = None,
+) -> tuple[Seen, Weighed, Holdout | None]:
+    """What was found by what the logs and the hold-out say of it, and the hold-out; `known` is one that was made before."""
+    weighed, idle = without_idle(logs, _weighed(seen, found, beyond), found.fitted)
     seen = seen.because(*found.decisions, *weighed.decisions, *idle)
-    seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
+    seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     if holdout is None or not weighed.fitted:
-        return seen, weighed, left, holdout
+        return seen, weighed, holdout
     weighed, preferences = preferred(holdout, weighed)
-    return seen.because(*preferences), weighed, left, holdout
+    return seen.because(*preferences), weighed, holdout
 
 
-def _favoured(
-    seen: Seen, holdout: Holdout | None, weighed: Weighed, gained: float, left: float
-) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
-    """What was weighed, with what the hold-out says of it, as probabilities; `gained` and `left` are nats, see `overruled`."""
+def _favoured(holdout: Holdout | None, weighed: Weighed) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
+    """What was weighed, with what the hold-out says of it, as probabilities that come true."""
     if not weighed.fitted:
         return weighed, (), ()
     if holdout is None:
         weighed, law = calibrated(weighed, None)
         return weighed, (), law
-    weighed, over = overruled(holdout, weighed, gained, left)
     told, notes, rules = asked(holdout, weighed.fitted[0])
     weighed, law = calibrated(weighed, favour(told))
-    return weighed, notes, (*over, *rules, *law)
+    return weighed, notes, (*rules, *law)
 
 
-def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
-    """What forms still gain beside the best that was found, and the probabilities; all that swings beside noise is a form of its own."""
+def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> Weighed:
+    """The probabilities; all that swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     library = seen.case.library
     own = [library.effects[name] for name in best.effects]
     left = left_beside(form_scores(linearised(seen.case, best.fit)), own)
     score = None if beyond is None else beyond.score
-    return left, weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
+    return weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
 
 
-def _checked(seen: Seen, material: Material, effects: Sequence[str] = ()) -> tuple[Seen, Holdout | None]:
-    """The logs to check on, None where there are none; where lost frames are among the `effects`, theirs are looked for."""
+def _checked(
+    seen: Seen, material: Material, effects: Sequence[str] = (), known: Holdout | None = None
+) -> tuple[Seen, Holdout | None]:
+    """The logs to check on, None where there are none; where lost frames are among the `effects`, theirs are looked for. What is `known`
+    of them already is not asked again."""
     checked = seen.checked
     if checked is None:
         return seen, None
-    if any(checked.library.effects[name].loses_commands for name in effects):
+    loses = any(checked.library.effects[name].loses_commands for name in effects)
+    if known is not None and loses == (known.case is not checked):
+        return seen.because(*known.decisions), known
+    if loses:
         checked = with_losses(checked, linearised(checked, plain_fit(checked)))[0]
     holdout = holdout_of(checked, material.holdout_names, material.tables, seen.case, seen.retuned)
     return seen.because(*holdout.decisions), holdout

@@ -40,7 +40,7 @@ def consequence(
 
 
 def without_idle(
-    case: Case, weighed: Weighed, tried: Sequence[FittedHypothesis]
+    logs: FittedLogs, weighed: Weighed, tried: Sequence[FittedHypothesis]
 ) -> tuple[Weighed, tuple[Decision, ...]]:
     """What was weighed, without hypotheses one of whose effects predicts the logs no better than the likeliest of all that were `tried`
     without it; and the rules.
@@ -48,7 +48,6 @@ def without_idle(
     What such an effect gains in nats it gains of the noise: it says nothing of what it stands beside, so those without it are compared by
     their own evidence, the names together as probable as before.
     """
-    logs = FittedLogs(case)
     shares, whole = dict(zip(weighed.fitted, weighed.probabilities, strict=True)), sum(weighed.probabilities)
     asked, rules = set[FittedHypothesis](), list[Decision]()
     while (entry := _next(shares, asked)) is not None:

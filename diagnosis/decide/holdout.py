@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.prior import size_at_its_end
 from diagnosis.decide.weighing import Weighed
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.instants import happens
@@ -136,26 +135,6 @@ def _outputs(case: Case) -> int:
     return max(
         1, int(np.any([np.isfinite(flight.filter_input.y).any(axis=0) for flight in case.flights], axis=0).sum())
     )
-
-
-def overruled(holdout: Holdout, weighed: Weighed, gained: float, left: float) -> tuple[Weighed, tuple[Decision, ...]]:
-    """What the hold-out says of an unknown effect: real rigs always leave a little that no form explains beside what was found.
-
-    `gained` are the nats of the best hypothesis, `left` those that forms still gain beside it.
-    """
-    if not weighed.fitted or weighed.unknown < weighed.probabilities[0]:
-        return weighed, ()
-    first, of = weighed.fitted[0], " + ".join(weighed.fitted[0].effects)
-    enough = decisions.LITTLE_LEFT * gained
-    little = left <= enough and not any(size_at_its_end(name, first) for name in first.effects)
-    rule = held_against("little_left", of, left, enough, "nats", "hold-out asked" if little else "unknown stays")
-    if not little:
-        return weighed, (rule,)
-    gone = holdout.shrinkage(holdout.predicted(first)).fraction
-    nearly = gone is not None and gone >= decisions.NEARLY_ALL_GONE
-    share = float("nan") if gone is None else gone
-    told = decided("nearly_all_gone", of, share, decisions.NEARLY_ALL_GONE, "unknown overruled" if nearly else "stays")
-    return (weighed.with_unknown(min(1.0 - gone, weighed.unknown)) if gone and nearly else weighed), (rule, told)
 
 
 def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:

@@ -3,10 +3,10 @@
 What is believed of each effect stands with it (sim/effects, `Prior` and `Unlikely`).
 """
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 
 from diagnosis.fit.evidence import FittedHypothesis
-from sim.effect import Effect, EffectParameter, Role
+from sim.effect import Effect, Role
 
 AT_ITS_END = (
     -4.5
@@ -50,17 +50,8 @@ def _rounding(effect: Effect, fitted: FittedHypothesis, step: float) -> float:
     )
 
 
-def size_at_its_end(name: str, fitted: FittedHypothesis) -> bool:
-    """Whether a fitted size of an effect went as far from zero as it may."""
-    return _at_an_end(name, fitted, lambda parameter: parameter.is_size)
-
-
 def _at_its_end(name: str, fitted: FittedHypothesis) -> bool:
     """Whether a fitted size of an effect went as far from zero as it may, or a sine has as few waves or as many as it may."""
-    return _at_an_end(name, fitted, lambda parameter: parameter.is_size or parameter.role is Role.WAVES)
-
-
-def _at_an_end(name: str, fitted: FittedHypothesis, counts: Callable[[EffectParameter], bool]) -> bool:
     values = fitted.fit.hypothesis.effects[name]
     own = [entry.parameter for entry in fitted.fit.free if entry.effect == name]
-    return any(values[p.symbol] in {p.lower, p.upper} - {p.zero} for p in own if counts(p))
+    return any(values[p.symbol] in {p.lower, p.upper} - {p.zero} for p in own if p.is_size or p.role is Role.WAVES)

@@ -16,6 +16,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.result import Judged, Seen
+from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import arm_case, arm_log
 
 
@@ -60,14 +61,14 @@ def test_an_effect_that_predicts_no_better_is_left_out_and_one_that_does_stays()
     case = arm_case(arm_log({**rub, **idle}, seed=76))
     both, alone, other = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle))
     weighed = Weighed((both, alone), (0.7, 0.2), 0.1, 0.0, 10.0)
-    found, (rule,) = without_idle(case, weighed, [alone, other, both])
+    found, (rule,) = without_idle(FittedLogs(case), weighed, [alone, other, both])
     assert [entry.effects for entry in found.fitted] == [("arm.coulomb",)]
     assert found.probabilities == pytest.approx((0.9,))
     assert found.unknown == 0.1
     assert rule.value is not None
     assert rule.value < 0.05
     kept, rules = without_idle(
-        case, weighed, [other, both]
+        FittedLogs(case), weighed, [other, both]
     )  # nothing else was tried with one effect less: the friction would be missed
     assert kept.fitted == weighed.fitted
     assert [one.outcome for one in rules] == ["arm.coulomb matters"]
@@ -78,7 +79,9 @@ def test_what_is_left_is_compared_by_its_own_evidence() -> None:
     rub, idle = {"arm.coulomb": {"b": 4e-4}}, {"theta_sensor.scale": {"scale": 1.001}}
     case = arm_case(arm_log({**rub, **idle}, seed=76))
     both, alone, other = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle))
-    found, _ = without_idle(case, Weighed((both, other, alone), (0.6, 0.2, 0.1), 0.1, 0.0, 10.0), [alone, other, both])
+    found, _ = without_idle(
+        FittedLogs(case), Weighed((both, other, alone), (0.6, 0.2, 0.1), 0.1, 0.0, 10.0), [alone, other, both]
+    )
     assert [entry.effects for entry in found.fitted] == [("theta_sensor.scale",), ("arm.coulomb",)]
     assert found.probabilities == pytest.approx((0.6, 0.3))
 

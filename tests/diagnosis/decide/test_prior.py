@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from diagnosis.decide import prior
-from diagnosis.decide.holdout import overruled
 from diagnosis.decide.weighing import Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
@@ -65,16 +64,6 @@ def test_a_size_at_the_end_of_its_range_is_rather_something_else(tau_s: float, f
     lag = EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0)
     free = replace(asked, fit=replace(asked.fit, free=(Free("psi_sensor.lag", lag, 0.02),)))
     assert prior_odds(usual) - prior_odds(free) == pytest.approx(further)
-
-
-def test_a_hold_out_does_not_speak_for_a_size_at_the_end_of_its_range() -> None:
-    # Truth: what is not asked of the hold-out needs none.
-    named = fitted(2000.0, psi_sensor__lag={"tau": 1.0})
-    lag = Free("psi_sensor.lag", EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0), 0.02)
-    weighed = Weighed((replace(named, fit=replace(named.fit, free=(lag,))),), (0.1,), 0.9, 0.0, 10.0)
-    after, (rule,) = overruled(object(), weighed, gained=2000.0, left=1.0)  # type: ignore[arg-type]
-    assert after is weighed
-    assert rule.outcome == "unknown stays"
 
 
 def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
