@@ -74,18 +74,24 @@ def said_of(table: ControllerTable, arithmetic: str) -> frozenset[str]:
         "one state": table.order == 1,
         "a difference that no term reads": any(not without_vanishing_powers(axis.p[-1]) for axis in table.axes)
         or any(len(axis.p) <= table.order for axis in table.axes),
-        **(_said_of_products(table) if arithmetic == "fixed" else {}),
+        "one state, no difference read": table.order == 1
+        and not any(without_vanishing_powers(p) for axis in table.axes for p in axis.p[1:]),
+        **(_said_of_words(table) if arithmetic == "fixed" else {}),
     }
     return frozenset(words for words, holds in asked.items() if holds)
 
 
-def _said_of_products(table: ControllerTable) -> dict[str, bool]:
-    terms = [term for axis in fixed_constants(table, word_number).axes for term in axis.terms]
+def _said_of_words(table: ControllerTable) -> dict[str, bool]:
+    law = fixed_constants(table, word_number)
+    terms = [term for axis in law.axes for term in axis.terms]
     short = [term.polynomial for term in terms if term.is_short]
+    ends = [end for axis in law.axes for end in (axis.reference_min_rad, axis.reference_max_rad)]
     return {
         "no narrow product": not any(term.is_narrow for term in terms),
         "no long product": all(term.is_short or term.is_narrow for term in terms),
         "no negative short coefficient": all(form.constant >= 0 and not form.powers for form in short),
+        "references within the sensors' range": all(law.angle_min_rad < end < law.angle_max_rad for end in ends),
+        "references filtered in half words": all(axis.reference_doublings == 1 for axis in law.axes),
     }
 
 
