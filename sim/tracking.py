@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.log import RunLog
+from records.loops import Loop
 from records.text.units import said, unit_suffix
 from sim.activity import Activity, activity
 from sim.columns import reference_name
@@ -82,19 +83,17 @@ def left(found: Sequence[Tracking]) -> tuple[str, ...]:
     )
 
 
-def tracking(log: RunLog, output: str) -> Tracking:
-    """Judge one output of a flight whose log has the references of all outputs; a log without such a hold gives zeros.
-
-    Its own input is the one of the same place in the log, as each loop of a law closes from an output to its input.
-    """
-    references = {name: log.column(reference_name(name)) for name in log.columns.outputs}
+def tracking(log: RunLog, loop: Loop) -> Tracking:
+    """Judge one loop's output in a flight whose log has the references of all its loops; a log without such a hold gives zeros."""
+    output, own_input = loop.output, loop.input
+    referred = [name for name in log.columns.outputs if reference_name(name) in log.extra]
+    references = {name: log.column(reference_name(name)) for name in referred}
     reference, measured = references[output], log.column(output)
     holds = _holds(log.t_s, references, reference)
     errors = [float(np.nanmean((reference - measured)[_last(log.t_s, hold)])) for hold in holds]
     pushes = [
         float(np.nanmax(np.abs(reference - measured)[hold.begin : hold.end])) for hold in holds[1:] if not hold.change
     ]
-    own_input = log.columns.inputs[log.columns.outputs.index(output)]
     steps = [hold for hold in holds if hold.change]
     error = reference - measured
     step = max((abs(hold.change) for hold in steps), default=0.0)

@@ -31,8 +31,8 @@ _NAMES = {
 }
 
 _OF_SEVERAL = (
-    "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; beside "
-    "them how far the other axis' steps push it out of rest, how far its input travels, and how often that turns round."
+    "Overshoot and steady error are of a loop's own steps, as its sensor shows them, while the others rest; beside them how far "
+    "the others' steps push it out of rest, how far its input travels, and how often that turns round."
 )
 _OF_ONE = (
     "Overshoot and steady error are of the steps of its reference, as its sensor shows them; beside them how far its input travels, "
@@ -73,17 +73,20 @@ def run_page(
 def flight_plot(log: RunLog) -> str:
     """Angles with their references, and all inputs, over time, as SVG text."""
     columns = log.columns
-    angles = [(_told(output), output, reference_name(output)) for output in columns.outputs]
     inputs = [(_told(name), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
     panels = [
         Panel(
-            f"{name} [{shown(output)[0]}]",
-            (
-                Curve(log.t_s, shown(output)[1] * log.column(output), "measured", BLUE),
-                Curve(log.t_s, shown(output)[1] * log.column(reference), "reference", ORANGE, "--"),
-            ),
+            f"{_told(output)} [{shown(output)[0]}]",
+            [
+                Curve(log.t_s, shown(output)[1] * log.column(name), how, colour, line)
+                for name, how, colour, line in (
+                    (output, "measured", BLUE, "-"),
+                    (reference_name(output), "reference", ORANGE, "--"),
+                )
+                if name == output or name in log.extra
+            ],
         )
-        for name, output, reference in angles
+        for output in columns.outputs
     ]
     panels += [
         Panel(f"{name} [{unit_of(column) or 1}]", (Curve(log.t_s, log.column(column), "", colour),))
@@ -102,8 +105,9 @@ def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, in
     return Section(
         "Flight",
         (
-            "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
-            "emulated STM32G071: what is measured goes to the board through its serial line, inputs come back, one frame each per sample.",
+            "The nonlinear plant, with its sensors' steps and what dry friction and stops it has, in the loop with the unmodified firmware "
+            "image on the emulated STM32G071: what is measured goes to the board through its serial line, inputs come back, one frame each "
+            "per sample.",
             *([_OF_SEVERAL] if len(tracking) > 1 else [_OF_ONE]),
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
