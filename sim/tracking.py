@@ -75,12 +75,16 @@ LEFT_OVERSHOOT = 1.0
 
 def left(found: Sequence[Tracking]) -> tuple[str, ...]:
     """The outputs that did not stay with their references, each with how far it went, in words; nothing of a flight that did."""
-    return tuple(
-        f"{entry.output} by {said(entry.output, max(entry.steady_error_rad, entry.push_rad))}"
-        for entry in found
-        if not (entry.steady_error_rad <= entry.left_rad and entry.overshoot <= LEFT_OVERSHOOT)
-        or (entry.settling_s is None and entry.push_rad > entry.left_rad)
-    )
+    return tuple(filter(None, map(_how_left, found)))
+
+
+def _how_left(entry: Tracking) -> str:
+    far = max(entry.steady_error_rad, entry.push_rad)
+    if not entry.steady_error_rad <= entry.left_rad or (entry.settling_s is None and entry.push_rad > entry.left_rad):
+        return f"{entry.output} by {said(entry.output, far)}"
+    if not entry.overshoot <= LEFT_OVERSHOOT:
+        return f"{entry.output}, which overshoots a step by {100.0 * entry.overshoot:.0f} %"
+    return ""
 
 
 def tracking(log: RunLog, loop: Loop) -> Tracking:
