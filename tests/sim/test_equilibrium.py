@@ -85,12 +85,12 @@ def test_a_plant_without_positions_rests_where_what_it_measures_is_wanted(tmp_pa
 
 
 def test_a_plant_without_positions_rests_also_with_an_effect_that_is_flat_elsewhere(tmp_path):
-    """Truth by hand: heat = G T = 32 W holds 40 K, below the 34 W at which the heater saturates. From 0 or 60 W no slope leads there."""
+    """Truth by hand: heat = G T = 4 W holds 5 K, below the 5 W at which the heater saturates; beyond, no slope leads there."""
     path = HEATER.write(tmp_path, "heater")
-    entry = '\n[effects.heater.saturation.limit]\nvalue = 34.0\nsd = 0.0\nunit = "W"\nsource = "a test"\n'
+    entry = '\n[effects.heater.saturation.limit]\nvalue = 5.0\nsd = 0.0\nunit = "W"\nsource = "a test"\n'
     path.write_text(path.read_text() + entry)
-    point = rest_with(bind(load_plant(path)), [0], [40.0])
-    np.testing.assert_allclose(point.u0, [32.0], rtol=1e-6)
+    point = rest_with(bind(load_plant(path)), [0], [5.0])
+    np.testing.assert_allclose(point.u0, [4.0], rtol=1e-6)
 
 
 def test_of_a_plant_with_positions_those_that_are_measured_are_held(bound):
