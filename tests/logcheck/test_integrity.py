@@ -224,10 +224,10 @@ def test_an_input_at_its_limit_in_one_stretch_is_told_from_when_to_when() -> Non
     u = log.u.copy()
     u[500:600, 0] = 0.0
     (found,) = _examined(replace(log, u=u)).findings
-    assert found.sentence == "u_M_V is at its limits: 5.0% of the rows at 0, all from 5 s to 5.99 s"
+    assert found.sentence == "u_M_V is at its limits: 5.0% of the rows at 0 V, all from 5 s to 5.99 s"
     u[700:800, 0] = 0.0
     (found,) = _examined(replace(log, u=u)).findings
-    assert found.sentence == "u_M_V is at its limits: 10.0% of the rows at 0"
+    assert found.sentence == "u_M_V is at its limits: 10.0% of the rows at 0 V"
 
 
 @pytest.mark.parametrize(("cut", "how"), [(np.minimum, "exceeds"), (np.maximum, "falls below")])
