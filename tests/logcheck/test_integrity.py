@@ -236,7 +236,7 @@ def test_an_input_that_is_cut_off_within_the_plants_limits_is_noted(cut: Callabl
     limit = float(np.median(log.u[:, 0]))
     (found,) = _examined(_column(log, "u_M_V", cut(log.u[:, 0], limit))).findings
     assert (found.kind, found.column, found.severity) == ("clipped", "u_M_V", "note")
-    assert f"u_M_V never {how} {limit:.5g}, where 50.0% of its rows stand" in found.sentence
+    assert f"u_M_V never {how} {limit:.5g} V, where 50.0% of its rows stand" in found.sentence
 
 
 def test_an_input_of_steps_is_not_called_cut_off() -> None:
