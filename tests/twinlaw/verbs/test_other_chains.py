@@ -35,6 +35,9 @@ def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     assert {row["axis"] for row in found["poles"]} == {
         key for key, entry in WISHES[name].items() if isinstance(entry, dict)
     }
+    schedule = WISHES[name].get("schedule")
+    stated = {key for row in found["poles"] for key in row if key.startswith("at_")}
+    assert stated == ({f"at_{schedule}"} if schedule else set())
     assert sorted(path.name for path in (tmp_path / "generated").iterdir()) == [
         "law.c", "law.h", "law_self_test.c", "protocol.c", "protocol.h",
     ]  # fmt: skip
