@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from design.report import DesignReport
 from design.trade_off import TradePoint
 from records.log import RunLog
+from records.loops import LOOPS, Loop
 from records.quality import Colour, flag
 from records.text.units import label, shown, unit_of
 from records.verification import Verification
@@ -23,6 +24,7 @@ from twinlaw.pages.run.roll_off import roll_off_section
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_rows
 
 Array = NDArray[np.float64]
+# The helicopter's columns by what they are of.
 _NAMES = {
     "psi_rad": "elevation Psi",
     "phi_rad": "azimuth Phi",
@@ -61,7 +63,7 @@ def run_page(
         why=quality_sentence(quality),
         facts=(("Controller table", verification.table_digest),),
         sections=(
-            _flight(log, tracking, counters),
+            _flight(log, report.loops, tracking, counters),
             _verified(verification, sizes),
             *design_sections(report),
             *roll_off_section(trade),
@@ -70,13 +72,13 @@ def run_page(
     )
 
 
-def flight_plot(log: RunLog) -> str:
-    """Angles with their references, and all inputs, over time, as SVG text."""
-    columns = log.columns
-    inputs = [(_told(name), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
+def flight_plot(log: RunLog, loops: Sequence[Loop] = LOOPS) -> str:
+    """Outputs, those of loops with their references, and all inputs, over time, as SVG text."""
+    columns, names = log.columns, _NAMES if tuple(loops) == LOOPS else {}
+    inputs = [(_told(name, names), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
     panels = [
         Panel(
-            f"{_told(output)} [{shown(output)[0]}]",
+            f"{_told(output, names)} [{shown(output)[0]}]",
             [
                 Curve(log.t_s, shown(output)[1] * log.column(name), how, colour, line)
                 for name, how, colour, line in (
@@ -95,12 +97,12 @@ def flight_plot(log: RunLog) -> str:
     return stack(panels, "time [s]")
 
 
-def _told(column: str) -> str:
-    """The column's name for a reader; the helicopter's by what it is of."""
-    return _NAMES.get(column, label(column).partition(" [")[0])
+def _told(column: str, names: Mapping[str, str]) -> str:
+    """The column's name for a reader, from `names` where it has one."""
+    return names.get(column, label(column).partition(" [")[0])
 
 
-def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
+def _flight(log: RunLog, loops: Sequence[Loop], tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
     faults = [f"{name} {count}" for name, count in counters.items() if count and name != "frames_accepted"]
     return Section(
         "Flight",
@@ -112,7 +114,7 @@ def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, in
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
         (Table(tracking_rows(tracking), TRACKING_HEADING),),
-        (flight_plot(log),),
+        (flight_plot(log, loops),),
     )
 
 
