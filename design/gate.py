@@ -50,7 +50,7 @@ def _check_relative_gains(report: DesignReport, settings: DesignSettings) -> Non
                 f"relative gain from {loop.input} to {loop.output}",
                 settings.place(loop.axis, float(report.points_rad[worst])),
                 f"{gains[worst]:.3g} at its crossover",
-                f"at least {least:g}: below, most of what the input does to this angle comes by way of the other loops",
+                f"at least {least:g}: below, most of what the input does to this output comes by way of the other loops",
                 "pair the loops otherwise, or choose an operating range where they are less coupled",
             )
 
@@ -100,5 +100,5 @@ def _apply(rule: _Rule, report: DesignReport, settings: DesignSettings, axis: st
         settings.place(axis, psi_rad),
         f"{worst:.4g} {rule.unit}".strip(),
         f"{bound} {rule.limit:.4g} {rule.unit}".strip(),
-        REMEDY,
+        "choose other poles" if settings.schedule is None else REMEDY,
     )

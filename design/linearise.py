@@ -37,15 +37,15 @@ def linearise(bound: BoundPlant, point: OperatingPoint) -> LinearPlant:
 
 
 def subsystem(bound: BoundPlant, linear: LinearPlant, loop: Loop, loops: Sequence[Loop] = LOOPS) -> LinearPlant:
-    """The part of `linear` from the loop's input to its angle, eq (20) or (21), without the states of the axes that other loops hold:
-    those that the input reaches and that reach the angle, in the plant's order.
+    """The part of `linear` from the loop's input to its angle, eq (20) or (21), without what other loops hold, an axis or, where none
+    moves, the state that they measure: those that the input reaches and that reach the angle, in the plant's order.
 
     Raises BadInput where the input does not reach the angle here, or through more states than a law can be made for.
     """
     model = bound.model
     column = [symbol.name for symbol in model.inputs].index(loop.input)
     output = [str(name) for name in model.outputs].index(loop.output)
-    others = {state for other in loops if other != loop for state in _axis_states(model, other)}
+    others = {state for other in loops if other != loop for state in _held_states(model, other)}
     free = np.array([symbol not in others for symbol in model.states])
     coupling = (linear.A != 0.0) & free & free[:, np.newaxis]
     reached = _closure(coupling, (linear.B[:, column] != 0.0) & free)
@@ -71,9 +71,9 @@ def of_loops(bound: BoundPlant, linear: LinearPlant, loops: Sequence[Loop]) -> L
     return LinearPlant(linear.A, linear.B[:, columns], linear.C[rows])
 
 
-def _axis_states(model: Model, loop: Loop) -> set[Any]:
+def _held_states(model: Model, loop: Loop) -> set[Any]:
     axis = measured_axis(model, loop)
-    return set() if axis is None else {axis.position, axis.velocity}
+    return {model.outputs[loop.output]} if axis is None else {axis.position, axis.velocity}
 
 
 def _closure(coupling: NDArray[np.bool_], seeds: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -10,7 +10,16 @@ from design.direct_form import DeltaForm, to_delta
 from design.discretise import sample
 from design.linearise import linearise, subsystem
 from design.loop import PlantPolynomials, plant_polynomials
-from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z, refined
+from design.pole_placement import (
+    FREE_DEGREES,
+    Placement,
+    characteristic,
+    demand_usable,
+    placed_in_gamma,
+    placed_in_z,
+    poles_z,
+    refined,
+)
 from design.settings import AxisSettings, DesignSettings
 from design.structure import measured_axis
 from design.transfer import TransferFunction, transfer_function
@@ -111,11 +120,14 @@ def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSett
     states, poles = len(plant.a) - 1, len(wishes.poles_rad_s)
     if poles != 2 * states:
         raise BadInput(
-            "poles", where, f"{poles} poles of an axis of {states} states", f"{2 * states} poles",
+            "poles", where, f"{poles} poles of a loop of {states} state{'s' * (states > 1)}", f"{2 * states} poles",
             f"give plant and controller {states} each in poles_rad_s",
         )  # fmt: skip
-    wanted = characteristic(poles_z(wishes.placed_rad_s, plant.sample_period_s))
-    placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[wishes.free_degree], where)
+    wanted, free = characteristic(poles_z(wishes.placed_rad_s, plant.sample_period_s)), FREE_DEGREES[wishes.free_degree]
+    placement = placed_in_z(transfer.b, transfer.a, wanted, free)
+    if not placement.is_sound:
+        placement = placed_in_gamma(plant, wishes.placed_rad_s, free)
+    demand_usable(placement, where)
     return PointDesign(plant, transfer, placement, exact_delta(plant, placement, wishes))
 
 

@@ -15,9 +15,11 @@ on the processor. What is left of eq (26) then is small, and in powers of gamma 
 
     A dP + B dQ = (gamma - gamma_1) ... (gamma - gamma_n) - (A P + B Q),    row . (d unknowns) = value - row . unknowns
 
-One such step leaves 1e-12 of each coefficient at most on the CE150.
+One such step leaves 1e-12 of each coefficient at most on the CE150. A plant that is slow beside its samples, or one of many states, whose
+roots lie so near z = 1 that eq (26) in z^-1 cannot tell them apart, begins in gamma as well.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -32,6 +34,7 @@ Array = NDArray[np.float64]
 
 # Above this condition number the coefficients keep fewer than 6 digits more than the cancellation in Q(1) takes away.
 MAX_CONDITION = 1e6
+MAX_CONDITION_GAMMA = 1e8  # in powers of gamma nothing cancels: eight digits are left, as many as a table keeps
 
 
 @dataclass(frozen=True)
@@ -75,10 +78,16 @@ FREE_DEGREES: Mapping[str, FreeDegree] = {
 
 @dataclass(frozen=True)
 class Placement:
-    """A controller that places the poles, with the condition number of the scaled system that gave it."""
+    """A controller that places the poles, with the condition number of the scaled system that gave it, and the largest usable one."""
 
     controller: DirectForm
     condition: float
+    limit: float = MAX_CONDITION
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the coefficients have digits enough."""
+        return self.condition < self.limit
 
 
 def poles_z(poles_rad_s: Sequence[complex], sample_period_s: float) -> NDArray[np.complex128]:
@@ -102,10 +111,16 @@ def sylvester(b: Array, a: Array, order: int) -> Array:
 def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Placement:
     """Solve eq (26) for `wanted` (2 n + 1,), or one more with a roll-off; b and a (n + 1,), b_0 = 0, a_0 = 1, ascending powers of z^-1.
 
-    B is divided by max|b|, which takes the condition number of the CE150 from 1e6 to about 50. Raises BadInput naming `where` (axis
-    and operating angle) when the system is ill-conditioned or when the controller has a pole outside the unit circle: both would
-    place the poles on paper only.
+    Raises BadInput naming `where` (axis and operating angle) when the system is ill-conditioned or when the controller has a pole
+    outside the unit circle: both would place the poles on paper only.
     """
+    placement = placed_in_z(b, a, wanted, free)
+    demand_usable(placement, where)
+    return placement
+
+
+def placed_in_z(b: Array, a: Array, wanted: Array, free: FreeDegree) -> Placement:
+    """The same, unjudged. B is divided by max|b|, which takes the condition number of the CE150 from 1e6 to about 50."""
     states = len(a) - 1
     scale, order = float(np.max(np.abs(b))), len(wanted) - 1 - states
     unscale = np.array([1.0] * order + [1.0 / scale] * (states + 1))
@@ -114,18 +129,34 @@ def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Pl
     system = np.vstack([sylvester(b / scale, a, order), row / size])
     target = np.append(wanted[1:] - np.append(a[1:], np.zeros(order)), free.value / size)
     condition = float(np.linalg.cond(system))
-    if not condition < MAX_CONDITION:
+    if not np.isfinite(condition):  # A and B share a root exactly
+        return Placement(DirectForm(np.zeros(states + 1), np.append(1.0, np.zeros(order))), math.inf)
+    solution = np.linalg.solve(system, target) * unscale
+    return Placement(DirectForm(q=solution[order:], p=np.append(1.0, solution[:order])), condition)
+
+
+def placed_in_gamma(plant: PlantPolynomials, poles_rad_s: Sequence[complex], free: FreeDegree) -> Placement:
+    """Eq (26) solved in powers of gamma from the start, unjudged."""
+    states, order = len(plant.a) - 1, len(poles_rad_s) - len(plant.a) + 1
+    nothing = DeltaForm(np.zeros(states + 1), np.zeros(order))
+    system, missing, sizes = _in_gamma(plant, nothing, poles_rad_s, free)
+    condition = float(np.linalg.cond(system))
+    step = np.linalg.solve(system, missing) / sizes if condition < MAX_CONDITION_GAMMA else np.zeros(len(sizes))
+    return Placement(to_direct(_form(plant, step)), condition, MAX_CONDITION_GAMMA)
+
+
+def demand_usable(placement: Placement, where: str) -> None:
+    """Raise BadInput naming `where` for a controller that places the poles on paper only."""
+    if not placement.is_sound:
         raise BadInput(
             "pole placement, eq (26)",
             where,
-            f"condition number {condition:.1e}",
-            f"below {MAX_CONDITION:g}",
-            "A and B share a root nearly: move the operating range",
+            f"condition number {placement.condition:.1e}",
+            f"below {placement.limit:g}",
+            "A and B share a root nearly, a motion that the input hardly moves or the output hardly shows: choose others, or another "
+            "operating range",
         )
-    solution = np.linalg.solve(system, target) * unscale
-    controller = DirectForm(q=solution[order:], p=np.append(1.0, solution[:order]))
-    _check_stable(controller, where)
-    return Placement(controller, condition)
+    _check_stable(placement.controller, where)
 
 
 def _check_stable(controller: DirectForm, where: str) -> None:
@@ -147,6 +178,14 @@ def refined(plant: PlantPolynomials, found: DeltaForm, poles_rad_s: Sequence[com
     b and a (n + 1,) of `plant` ascend in gamma, poles (n + order,) are in rad/s. `found` must be near: all is linear, but a step as large
     as the controller itself would bring back what its columns round away. Raises numpy's LinAlgError where A and B share a root.
     """
+    system, missing, sizes = _in_gamma(plant, found, poles_rad_s, free)
+    return _form(plant, _unknowns(found) + np.linalg.solve(system, missing) / sizes)
+
+
+def _in_gamma(
+    plant: PlantPolynomials, found: DeltaForm, poles_rad_s: Sequence[complex], free: FreeDegree
+) -> tuple[Array, Array, Array]:
+    """The system for what is to be added to the unknowns of `found`, what is missing, and the sizes by which its columns are divided."""
     unknowns = len(found.q) + len(found.p)
     origin = _at(plant, free, np.zeros(unknowns))
     columns = np.stack([_at(plant, free, unit) - origin for unit in np.eye(unknowns)], axis=1)
@@ -156,8 +195,7 @@ def refined(plant: PlantPolynomials, found: DeltaForm, poles_rad_s: Sequence[com
     rows = np.max(np.abs(columns), axis=1)
     system = columns / rows[:, np.newaxis]
     sizes = np.max(np.abs(system), axis=0)
-    step = np.linalg.solve(system / sizes, missing / rows) / sizes
-    return _form(plant, _unknowns(found) + step)
+    return system / sizes, missing / rows, sizes
 
 
 def wanted_in_gamma(poles_rad_s: Sequence[complex], sample_period_s: float) -> Array:

@@ -359,8 +359,14 @@ def read_poles(entries: Any, where: str) -> tuple[complex, ...]:
     most = 2 * ORDERS[-1]
     if not isinstance(entries, list | tuple) or len(entries) not in range(2, most + 1, 2):
         got = f"{len(entries)} poles" if isinstance(entries, list | tuple) else repr(entries)[:60]
-        expected = f"two poles for each state of the axis, as 6 poles of a helicopter's, {most} at most"
-        raise BadInput("poles", where, got, expected, "give plant and controller as many each as the axis has states")
+        expected = f"two poles for each state that the input moves and that moves the output, {most} at most"
+        raise BadInput(
+            "poles",
+            where,
+            got,
+            expected,
+            f"give plant and controller as many each; of more than {ORDERS[-1]} states leave the fastest out",
+        )
     poles = tuple(_pole(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
     for pole in poles:
         if pole.imag != 0.0 and poles.count(pole) != poles.count(pole.conjugate()):

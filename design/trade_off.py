@@ -59,7 +59,7 @@ def _point(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, 
         factor=factor,
         roll_off_pole_rad_s={axis: settings.axis(axis).roll_off_pole_rad_s for axis in AXES},
         sensitivity={axis: _sensitivity(moved, points, axis) for axis in AXES},
-        tracking={axis: tracking(log, output) for axis, output in zip(AXES, log.columns.outputs, strict=True)},
+        tracking={loop.axis: tracking(log, loop) for loop in LOOPS},
     )
 
 

@@ -8,6 +8,7 @@ from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows, in_words
 from logcheck.values import NEAR_LIMIT, saturations
 from records.log import RunLog
+from records.text.units import unit_of
 
 
 def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, float]]) -> Iterator[Found]:
@@ -17,7 +18,7 @@ def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, flo
         u, margin = log.column(column), NEAR_LIMIT * (high - low)
         sides = [(low, shares.lower, u <= low + margin), (high, shares.upper, u >= high - margin)]
         shown = [
-            f"{share:.1%} of the rows at {limit:g}{_when(log.t_s, rows)}"
+            f"{share:.1%} of the rows at {_told(limit, column)}{_when(log.t_s, rows)}"
             for limit, share, rows in sides
             if share > thresholds.SATURATED_SHARE
         ]
@@ -26,7 +27,9 @@ def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, flo
         beyond = (u < low - margin) | (u > high + margin)
         if beyond.any():
             at, rows = log.t_s[beyond], in_words(int(beyond.sum()), "row")
-            sentence = f"{column} is beyond the plant's limits {low:g}..{high:g} in {rows}: the plant clips it"
+            sentence = (
+                f"{column} is beyond the plant's limits {low:g}..{_told(high, column)} in {rows}: the plant clips it"
+            )
             yield Found(Finding("beyond_limits", name, column, float(at[0]), float(at[-1]), sentence))
         yield from _clipped(log, name, column, low + margin, high - margin)
 
@@ -48,12 +51,18 @@ def _clipped(log: RunLog, name: str, column: str, low: float, high: float) -> It
         if _visits(u == extreme) >= thresholds.LEAST_VISITS:
             share = f"where {count / len(u):.1%} of its rows stand"
             why = "it was cut off before it was logged, or the controller has a limit of its own"
-            yield _note("clipped", log, name, column, f"{column} never {how} {extreme:.5g}, {share}: {why}")
+            yield _note(
+                "clipped", log, name, column, f"{column} never {how} {extreme:.5g} {unit_of(column)}, {share}: {why}"
+            )
 
 
 def _visits(rows: Rows) -> int:
     """How many times rows begin to be true."""
     return int(rows[0]) + int(np.sum(rows[1:] & ~rows[:-1]))
+
+
+def _told(value: float, column: str) -> str:
+    return f"{value:g} {unit_of(column)}".rstrip()
 
 
 def _when(t_s: Array, rows: Rows) -> str:

@@ -108,8 +108,8 @@ STEADY_SHARE = Criterion(
 STEP_ERROR = Criterion(
     "integration",
     "error of one integration step a sample, over one step of the output's sensor",
-    Limit(0.1, "", "a tenth of what the sensor can show"),
-    Limit(1.0, "", "beyond it the sensor shows it"),
+    Limit(0.1, "steps", "a tenth of what the sensor can show"),
+    Limit(1.0, "steps", "beyond it the sensor shows it"),
 )
 CRITERIA = (MISFIT, TRUTH, FREE_RUN, MARGINS, OVERSHOOT, STEADY_ERROR, STEADY_SHARE, STEP_ERROR)
 

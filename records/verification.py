@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from records.text.units import said
+
 VERIFICATION_SCHEMA = "verification/1"
 VALIDATION_SCHEMA = "validation/1"
 
@@ -94,7 +96,7 @@ class RoundingBound:
 class PoleMigration:
     """The slowest closed-loop pole of one axis as designed, and the worst one between grid points after fit and rounding.
 
-    `at` says in words where on the schedule the worst one is; empty of a law without one.
+    `scheduled_by` is the column that the law goes by, None of a law without a schedule.
     """
 
     axis: str
@@ -102,7 +104,27 @@ class PoleMigration:
     worst_slowest_rad_s: float
     at_psi_rad: float
     stable: bool
-    at: str = ""
+    scheduled_by: str | None = None
+
+    @property
+    def at(self) -> str:
+        """Where on the schedule the worst one is, in words; empty of a law without one."""
+        return "" if self.scheduled_by is None else said(self.scheduled_by, self.at_psi_rad)
+
+    @property
+    def entry(self) -> dict[str, Any]:
+        """What verification.json states."""
+        content = asdict(self)
+        return at_own_schedule(content, content.pop("scheduled_by"))
+
+
+def at_own_schedule(entry: Mapping[str, Any], column: str | None) -> dict[str, Any]:
+    """An entry whose at_psi_rad is called by the law's own schedule, at_theta_rad; without a schedule it has none."""
+    return {
+        key if key != "at_psi_rad" else f"at_{column}": value
+        for key, value in entry.items()
+        if key != "at_psi_rad" or column is not None
+    }
 
 
 @dataclass(frozen=True)
@@ -208,7 +230,7 @@ def verification_text(verification: Verification) -> str:
         "self_test": content["self_tests"],
         "rounding_bound_V": verification.rounding.entries,
         "rounding_bounds_V": {name: bound.entries for name, bound in verification.roundings.items()},
-        "poles": [{key: value for key, value in row.items() if key != "at"} for row in content["poles"]],
+        "poles": [row.entry for row in verification.poles],
         "target": content["target"],
         **({"proofs": content["proofs"]} if verification.proofs else {}),
     }

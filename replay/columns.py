@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.table import ControllerTable
+from records.text.units import unit_of, units_of
 from replay import thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel
@@ -61,7 +62,9 @@ def constant_inputs(flight: ReplayedLog, names: Sequence[str]) -> Iterator[Varia
         return
     low, high = ([outside if value is None else value for value in still] for outside in (-1e9, 1e9))
     shown = " and ".join(
-        f"{name} stands at {value:g} V" for name, value in zip(names, still, strict=True) if value is not None
+        f"{name} stands at {value:g} {unit_of(name)}".rstrip()
+        for name, value in zip(names, still, strict=True)
+        if value is not None
     )
     sentence = f"does not drive all inputs: {shown} throughout, whatever its law answers"
     yield Variant(
@@ -122,5 +125,5 @@ def _told(line: _Line, name: str) -> Iterator[tuple[str, str]]:
     if line.offset_V != 0.0:
         yield (
             OFFSET,
-            f"sends {name} {abs(line.offset_V):.6g} V {'above' if line.offset_V > 0.0 else 'below'} its law's answer",
+            f"sends {name} {abs(line.offset_V):.6g} {units_of([name])} {'above' if line.offset_V > 0.0 else 'below'} its law's answer",
         )

@@ -17,6 +17,7 @@ from records.diagnosis import Firmware
 from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
+from records.text.units import units_of
 from replay.arithmetic import FIXED, Replayed, replayed, replayed_in_fixed
 from replay.events import UNLOGGED
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
@@ -106,8 +107,8 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
 def _as_printed(flight: ReplayedLog, within_V: float) -> str:
     few = " and ".join(dict.fromkeys(str(entry) for entry in flight.printings if not entry.is_exact))
     return (
-        f"the log rounded its numbers ({few}); within what that does to its law's answers, {within_V:.2g} V at most, the replay "
-        f"agrees: {NINE_DIGITS}"
+        f"the log rounded its numbers ({few}); within what that does to its law's answers, {within_V:.2g} {flight.unit} at most, the "
+        f"replay agrees: {NINE_DIGITS}"
     )
 
 
@@ -200,7 +201,7 @@ def _meets_limit(table: ControllerTable, run: Replayed, row: int) -> bool:
 def _unexplained(residuals: Sequence[Residual], hint: str) -> str:
     different = max(entry.samples_different for entry in residuals)
     greatest = max(residuals, key=lambda entry: entry.max_V)
-    size = f"up to {greatest.max_V:.3g} V ({greatest.max_ulp:.3g} units of the last place)"
+    size = f"up to {greatest.max_V:.3g} {units_of([greatest.input])} ({greatest.max_ulp:.3g} units of the last place)"
     rounding = (
         ", the size of rounding: another compiler, processor or order of operations"
         if greatest.max_V < ROUNDING_V

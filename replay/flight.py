@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from records.log import RunLog
 from records.table import ControllerTable
+from records.text.units import units_of
 from replay import thresholds
 from replay.digits import Printing, printing
 
@@ -46,6 +47,11 @@ class ReplayedLog:
         return np.column_stack(
             [np.maximum(own.half_step(column), angle.half_step(column)) for column, own, angle in columns]
         )
+
+    @property
+    def unit(self) -> str:
+        """Of the inputs."""
+        return units_of(self.input_names)
 
     @property
     def loops(self) -> int:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.table import ControllerTable
+from records.text.units import units_of
 from replay import law, thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel, Each, Fold, Overflow, ReplayLaw, Setup
@@ -54,16 +55,16 @@ def output_wraps(own_V: Array, logged_V: Array, flight: ReplayedLog) -> Iterator
     if any(steps):
         for rounding in law.ROUNDINGS:
             on_grid = replace(channel, step_V=tuple(steps), rounding=rounding)
-            stepped = f"{sentence}; it sends voltages in steps of {steps_in_words(steps)}"
+            stepped = f"{sentence}; it sends its answers in steps of {steps_in_words(names, steps)}"
             yield Variant("output_wraps", "channel", stepped, partial(replace, channel=on_grid))
 
 
 def in_words(name: str, wrap: Wrap) -> str:
     """The range as a person says it."""
-    low, high = wrap.low, wrap.low + wrap.span
+    low, high, unit = wrap.low, wrap.low + wrap.span, units_of([name])
     if math.isclose(-low, high):
-        return f"{name} wraps round at +-{high:.7g} V"
-    return f"{name} wraps round from {high:.7g} V to {low:.7g} V"
+        return f"{name} wraps round at +-{high:.7g} {unit}"
+    return f"{name} wraps round from {high:.7g} {unit} to {low:.7g} {unit}"
 
 
 def output_wrap(own_V: Array, logged_V: Array, step_V: float, digits_V: float) -> Wrap | None:
@@ -130,9 +131,8 @@ def sums_that_overflow(table: ControllerTable, flight: ReplayedLog, inputs: NDAr
             for axes in dict.fromkeys(((axis,), tuple(range(len(names))))):
                 whose = " and ".join(names[index] for index in axes)
                 places = tuple(index in axes for index in range(len(names)))
-                yield from _overflows(
-                    numbers_V[:, axis], abs(float(off_V[rows[0], axis])), _Place(places, at, f"{whose} {what}")
-                )
+                place = _Place(places, at, f"{whose} {what}", units_of([flight.input_names[axis]]))
+                yield from _overflows(numbers_V[:, axis], abs(float(off_V[rows[0], axis])), place)
 
 
 @dataclass(frozen=True)
@@ -140,13 +140,16 @@ class _Place:
     axes: tuple[bool, ...]
     at: int
     what: str
+    unit: str
 
     def variant(self, kind: int, low_V: float, span_V: float) -> Variant:
         """The law with an integer of this range in this place."""
         name, verb = ("sum_wraps", "wraps round") if kind == law.OVERFLOW_WRAPS else ("sum_saturates", "saturates")
-        ends = f"at +-{-low_V:.7g} V" if low_V < 0.0 else "below 0 V to the top of an unsigned range"
+        ends = (
+            f"at +-{-low_V:.7g} {self.unit}" if low_V < 0.0 else f"below 0 {self.unit} to the top of an unsigned range"
+        )
         if low_V < 0.0 and not math.isclose(span_V, -2.0 * low_V):
-            ends = f"at {low_V:.7g} V and {low_V + span_V:.7g} V"
+            ends = f"at {low_V:.7g} {self.unit} and {low_V + span_V:.7g} {self.unit}"
         overflow = Overflow(kind, self.at, self._there(low_V), self._there(span_V))
         sentence = f"lets an integer overflow: the {self.what} {verb} {ends}"
         return Variant(name, "overflow", sentence, partial(replace, overflow=overflow))

@@ -336,6 +336,6 @@ def _from_midair(shop: Workshop, table: ControllerTable) -> Told | None:
     at_s, bound_V = found
     sentence = (
         f"the log does not begin with the law at rest; from {at_s:.6g} s on, put into the state that the log tells, "
-        f"the replay agrees within {bound_V:g} V, which is rounding and no proof of equal bits"
+        f"the replay agrees within {bound_V:g} {shop.flight.unit}, which is rounding and no proof of equal bits"
     )
     return Told(IN_FLIGHT, sentence)

@@ -14,6 +14,7 @@ from logcheck.breaks import gaps
 from logcheck.stretches import part
 from records.log import RunLog
 from records.table import ControllerTable
+from records.text.units import units_of
 from replay import thresholds
 from replay.arithmetic import replayed
 from replay.events import Workshop
@@ -47,18 +48,18 @@ def replay_stretches(
     if not first.bit_exact and first.cause not in CLEARED:
         return first
     behind = [_behind(part(log, rows), table) for rows in parts[1:]]
-    end_s = float(log.t_s[parts[0].stop - 1])
+    end_s, unit = float(log.t_s[parts[0].stop - 1]), units_of(loop.input for loop in table.loops)
     sentence = f"rows or readings are missing behind {end_s:.6g} s; up to there the firmware is cleared"
-    sentence += "".join(f", {_in_words(entry)}" for entry in behind)
+    sentence += "".join(f", {_in_words(entry, unit)}" for entry in behind)
     if first.sentence is not None:
         sentence = f"{first.sentence}; {sentence}"
     return replace(first, bit_exact=False, cause=MISSING_ROWS, sentence=sentence)
 
 
-def _in_words(entry: _Behind) -> str:
+def _in_words(entry: _Behind, unit: str) -> str:
     if entry.since_s is None:
         return f"from {entry.start_s:.6g} s to {entry.end_s:.6g} s the law's state is not known"
-    within = "to the bit" if entry.within_V == 0.0 else f"within {entry.within_V:g} V"
+    within = "to the bit" if entry.within_V == 0.0 else f"within {entry.within_V:g} {unit}"
     return f"from {entry.since_s:.6g} s to {entry.end_s:.6g} s it agrees {within}"
 
 

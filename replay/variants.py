@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from records.loops import Loop
 from records.table import AxisLaw, ControllerTable, Polynomial
+from records.text.units import unit_of
 from replay import law, thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel, Gains, Setup
@@ -46,8 +48,8 @@ def variants(table: ControllerTable, flight: ReplayedLog, others: Sequence[Contr
         *_other_tables(table, others),
         *_windup(table.order),
         *_references(table),
-        *_limits(limits),
-        *_quantised(flight, limits),
+        *_limits(table.loops, limits),
+        *_quantised(flight, table.loops, limits),
         *_arithmetic(),
         *_schedule(table),
         *_rounded(table),
@@ -164,15 +166,19 @@ def _limits_found(table: ControllerTable, flight: ReplayedLog) -> dict[str, dict
     return found
 
 
-def _shown(found: dict[str, dict[str, float]]) -> str:
-    return ", ".join(f"{axis} {name} {value:g} V" for axis, limits in found.items() for name, value in limits.items())
+def _shown(loops: Sequence[Loop], found: dict[str, dict[str, float]]) -> str:
+    return ", ".join(
+        f"{loop.axis} {loop.own(name)} {value:g} {unit_of(loop.input)}".rstrip()
+        for loop in loops
+        for name, value in found.get(loop.axis, {}).items()
+    )
 
 
-def _limits(found: dict[str, dict[str, float]]) -> Iterator[Variant]:
+def _limits(loops: Sequence[Loop], found: dict[str, dict[str, float]]) -> Iterator[Variant]:
     """Other limits within the law, or only behind it."""
     if not found:
         return
-    shown = _shown(found)
+    shown = _shown(loops, found)
     yield Variant("other_limits", "limits", f"has other limits: {shown}", partial(_other_limits, found=found))
     behind = f"is limited behind its law, the inputs were logged after that: {shown}"
     yield Variant("limited_behind_the_law", "channel", behind, partial(_limited_behind, found=found))
@@ -195,25 +201,27 @@ def _limited_behind(setup: Setup, found: dict[str, dict[str, float]]) -> Setup:
     return replace(setup, channel=replace(setup.channel, low_V=low_V, high_V=high_V))
 
 
-def _quantised(flight: ReplayedLog, limits: dict[str, dict[str, float]]) -> Iterator[Variant]:
+def _quantised(flight: ReplayedLog, loops: Sequence[Loop], limits: dict[str, dict[str, float]]) -> Iterator[Variant]:
     """Grids on which all logged voltages lie: that of the firmware's own PWM, and whatever the log shows."""
     steps = [grid_step(u_V) for u_V in flight.logged_V.T]
     if not any(steps) or (flight.inputs_are_rounded and all(_is_decimal(step) for step in steps)):
         return
     for rounding, name in law.ROUNDINGS.items():
         channel = Channel(step_V=tuple(steps), rounding=rounding)
-        sentence = f"sends voltages in steps of {steps_in_words(steps)}, rounded {name}"
+        sentence = f"sends its answers in steps of {steps_in_words(flight.input_names, steps)}, rounded {name}"
         change = partial(replace, channel=channel)
         yield Variant("quantised_output", "channel", sentence, change)
         if limits:
-            ends = f"lets an integer saturate behind its law: {_shown(limits)}; it {sentence}"
+            ends = f"lets an integer saturate behind its law: {_shown(loops, limits)}; it {sentence}"
             saturates = partial(_changed_and_limited, change=change, found=limits)
             yield Variant("output_saturates", "channel", ends, saturates)
 
 
-def steps_in_words(steps: Sequence[float]) -> str:
+def steps_in_words(names: Sequence[str], steps: Sequence[float]) -> str:
     """The steps of all inputs as a person says them."""
-    return " and ".join(dict.fromkeys(f"{step:.6g} V" for step in steps if step))
+    return " and ".join(
+        dict.fromkeys(f"{step:.6g} {unit_of(name)}".rstrip() for name, step in zip(names, steps, strict=True) if step)
+    )
 
 
 def grid_step(u_V: Array) -> float:

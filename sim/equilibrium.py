@@ -1,6 +1,7 @@
 """The rest points of a plant: constant inputs and states that hold its axes at given positions."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,7 +77,7 @@ def _measured(bound: BoundPlant, wanted: Mapping[int, float]) -> OperatingPoint:
     told = ", ".join(said(names[place], value) for place, value in wanted.items())
     commands = np.array([bound.commands(variable) for variable in bound.model.inputs]).reshape(-1, 2)
     starts = [commands @ np.array([1.0 - share, share]) for share in STARTS]
-    tries = [(x, u) for x in _filled(bound, wanted) for u in starts]
+    tries = [*_nominal(bound, wanted), *((x, u) for x in _filled(bound, wanted) for u in starts)]
     found = next(filter(None, (_solve_measured(bound, wanted, x.copy(), u) for x, u in tries)), None)
     where = f"plant {bound.plant.name!r} at {told}"
     if found is None:
@@ -84,6 +85,14 @@ def _measured(bound: BoundPlant, wanted: Mapping[int, float]) -> OperatingPoint:
         raise BadInput("equilibrium", where, "no solution of f(x, u) = 0", "a rest point that measures so", remedy)
     _check_inputs(bound, found[1], where)
     return OperatingPoint(0.0, *found)
+
+
+def _nominal(bound: BoundPlant, wanted: Mapping[int, float]) -> Iterator[tuple[Array, Array]]:
+    """With effects, where the nominal plant rests, as `_begin` does."""
+    if bound.effects:
+        with suppress(BadInput):
+            nominal = _measured(without_effects(bound), wanted)
+            yield start_state(bound, nominal.x0), nominal.u0
 
 
 def _filled(bound: BoundPlant, wanted: Mapping[int, float]) -> Iterator[Array]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.log import RunLog
+from records.loops import Loop
 from records.text.units import said, unit_suffix
 from sim.activity import Activity, activity
 from sim.columns import reference_name
@@ -74,27 +75,29 @@ LEFT_OVERSHOOT = 1.0
 
 def left(found: Sequence[Tracking]) -> tuple[str, ...]:
     """The outputs that did not stay with their references, each with how far it went, in words; nothing of a flight that did."""
-    return tuple(
-        f"{entry.output} by {said(entry.output, max(entry.steady_error_rad, entry.push_rad))}"
-        for entry in found
-        if not (entry.steady_error_rad <= entry.left_rad and entry.overshoot <= LEFT_OVERSHOOT)
-        or (entry.settling_s is None and entry.push_rad > entry.left_rad)
-    )
+    return tuple(filter(None, map(_how_left, found)))
 
 
-def tracking(log: RunLog, output: str) -> Tracking:
-    """Judge one output of a flight whose log has the references of all outputs; a log without such a hold gives zeros.
+def _how_left(entry: Tracking) -> str:
+    far = max(entry.steady_error_rad, entry.push_rad)
+    if not entry.steady_error_rad <= entry.left_rad or (entry.settling_s is None and entry.push_rad > entry.left_rad):
+        return f"{entry.output} by {said(entry.output, far)}"
+    if not entry.overshoot <= LEFT_OVERSHOOT:
+        return f"{entry.output}, which overshoots a step by {100.0 * entry.overshoot:.0f} %"
+    return ""
 
-    Its own input is the one of the same place in the log, as each loop of a law closes from an output to its input.
-    """
-    references = {name: log.column(reference_name(name)) for name in log.columns.outputs}
+
+def tracking(log: RunLog, loop: Loop) -> Tracking:
+    """Judge one loop's output in a flight whose log has the references of all its loops; a log without such a hold gives zeros."""
+    output, own_input = loop.output, loop.input
+    referred = [name for name in log.columns.outputs if reference_name(name) in log.extra]
+    references = {name: log.column(reference_name(name)) for name in referred}
     reference, measured = references[output], log.column(output)
     holds = _holds(log.t_s, references, reference)
     errors = [float(np.nanmean((reference - measured)[_last(log.t_s, hold)])) for hold in holds]
     pushes = [
         float(np.nanmax(np.abs(reference - measured)[hold.begin : hold.end])) for hold in holds[1:] if not hold.change
     ]
-    own_input = log.columns.inputs[log.columns.outputs.index(output)]
     steps = [hold for hold in holds if hold.change]
     error = reference - measured
     step = max((abs(hold.change) for hold in steps), default=0.0)

@@ -109,6 +109,24 @@ return Model(
 )
 """,
 )
+# Two such bodies, heat flowing between them.
+TWO_HEATERS = OwnPlant(
+    {"C": (30.0, 2.0, "J K^-1"), "G": (0.3, 0.03, "W K^-1"), "H": (0.2, 0.02, "W K^-1")},
+    {"T1_K": 0.0625, "T2_K": 0.0625},
+    """
+T1, T2, heat1, heat2 = symbol("T1_K"), symbol("T2_K"), symbol("heat1_W"), symbol("heat2_W")
+across = p["H"] * (T1 - T2)
+return Model(
+    name="NAME", states=(T1, T2), inputs=(heat1, heat2), outputs={"T1_K": T1, "T2_K": T2}, parameters=PARAMETERS,
+    rates={T1: (heat1 - p["G"] * T1 - across) / p["C"], T2: (heat2 - p["G"] * T2 + across) / p["C"]},
+    axes=(), input_limits={heat1: (0, 40), heat2: (0, 40)},
+    places=Places(
+        inputs={"left_heater": InputPlace(heat1, "W", 20.0), "right_heater": InputPlace(heat2, "W", 20.0)},
+        sensors={"left_probe": SensorPlace("T1_K", "K", 50.0), "right_probe": SensorPlace("T2_K", "K", 50.0)},
+    ),
+)
+""",
+)
 
 _ARM = """
 theta, omega, u = symbol("theta_rad"), symbol("omega_rad_s"), symbol("u_V")

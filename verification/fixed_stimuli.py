@@ -5,10 +5,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.fixed.constants import FixedAxis, fixed_constants, word_number
-from codegen.fixed.equations import fixed_axis_state
+from codegen.fixed.arithmetic import Scalars
+from codegen.fixed.constants import FixedAxis, FixedLaw, FixedTerm, fixed_constants, word_number
+from codegen.fixed.equations import fixed_axis_state, law_reset, polynomial, schedule
 from codegen.fixed.formats import FILTERED_BITS, MISSING, law_formats
 from codegen.law_equations import state_words
+from codegen.law_frame import words_from_state
 from records.table import ControllerTable
 from verification import stimuli
 from verification.stimuli import Stimulus
@@ -16,7 +18,7 @@ from verification.stimuli import Stimulus
 Bits = NDArray[np.uint32]
 
 EDGES = "edges of words"
-_MOVE_BITS = 20  # how far the last step of v at the end of its range goes
+_STARTS = 1024  # values of w, over all its range, of which the one is taken that leaves least to its difference
 _NEIGHBOURS = 4
 
 # Missing, the outermost, and the least words, a few powers of two and their neighbours.
@@ -89,38 +91,63 @@ def from_random_states(table: ControllerTable, rng: np.random.Generator, lanes: 
 
 
 def at_the_edges(table: ControllerTable) -> Stimulus:
-    """One step from states that chance does not meet: a filter whose step is a whole word, feedback at either end of its range."""
-    law = fixed_constants(table, word_number)
-    names = [loop.axis for loop in table.loops]
-    states = [
-        {f"{axis}.reference_{index}_rad": sign * 2**places for axis in names for index in (1, 2)}
-        for places in range(FILTERED_BITS - 8, FILTERED_BITS + 1)
-        for sign in (1, -1)
-    ]
-    states += [state for axis in law.axes for state in _feedback_at_its_ends(axis, law.w_bits - 1)]
+    """One step from states that chance does not meet: a filter whose step is a whole word, feedback at either end of its range, a
+    residue of ones alone. All else rests at the reference next to zero."""
+    law, names = fixed_constants(table, word_number), [loop.axis for loop in table.loops]
+    references = [min(max(0, axis.reference_min_rad), axis.reference_max_rad) for axis in law.axes]
+    psi = schedule(law, Scalars(), references)
+    states: list[dict[str, int]] = []
+    for axis, reference in zip(law.axes, references, strict=True):
+        target = reference * 2**axis.reference_doublings
+        states += [
+            {f"{axis.name}.reference_{index}_rad": target + sign * 2**places}
+            for index in (1, 2)
+            for places in range(FILTERED_BITS - 8, FILTERED_BITS + 1)
+            for sign in (1, -1)
+        ]
+        states += _feedback_at_its_ends(law, axis, psi)
+        states.append({f"{axis.name}.v_residue": -1})
     fields = fixed_axis_state(table.order).__dataclass_fields__
     place_of = {name: place for place, name in enumerate(f"{axis}.{field}" for axis in names for field in fields)}
-    words = np.zeros((len(states), state_words(table)), dtype=np.int64)
+    at_rest = [*words_from_state(law_reset(law, Scalars(), references))]
+    words = np.tile(np.array(at_rest, dtype=np.int64), (len(states), 1))
     for row, state in zip(words, states, strict=True):
         for name, value in state.items():
             row[place_of[name]] = value
-    at_rest = np.zeros((1, len(states), 2 * len(names)), dtype=np.uint32)
-    return Stimulus(EDGES, at_rest[0, :, len(names) :].copy(), at_rest, words.astype(np.int32).view(np.uint32))
+    given = np.tile(np.array([*references, *references], dtype=np.int32), (1, len(states), 1)).view(np.uint32)
+    return Stimulus(EDGES, given[0, :, len(names) :].copy(), given, words.astype(np.int32).view(np.uint32))
 
 
-def _feedback_at_its_ends(axis: FixedAxis[int], bits: int) -> Iterator[dict[str, int]]:
-    """States from which v moves to -2^bits or 2^bits and its neighbours: w far out, its difference takes it there."""
-    gains = {
-        term.factor: term.sign * term.polynomial.constant / 2.0 ** (term.excess - term.doublings + axis.residue_places)
-        for term in axis.terms
-    }
-    if not gains.get("w_1_V"):  # of one state there is no difference of w to lead it there
+def _feedback_at_its_ends(law: FixedLaw[int], axis: FixedAxis[int], psi: tuple[int, ...]) -> Iterator[dict[str, int]]:
+    """States from which v moves to either end of its range and its neighbours, at rest but for w and one word that leads it there.
+
+    That word is the difference of w, or, where none is fed back, the last one of the error. w, whose own share of the move is less
+    than a word for each of its words, does the rest.
+    """
+    gains = {term.factor: _words_of_move(term, axis, psi) for term in axis.terms}
+    of_w, error = gains.get("w_0_V", 0.0), law.order - 1
+    if gains.get("w_1_V"):
+        lead, gain, bits = "w_1_V", gains["w_1_V"], law.w_bits + 1
+    else:
+        lead, gain, bits = f"e_{error}_rad", -gains.get(f"e_{law.order}_rad", 0.0), law.error_bits + error
+    if gain == 0.0 or of_w == -1.0:
         return
-    for sign in (1, -1):
-        w_0, move = sign * (2**bits - 2**_MOVE_BITS), sign * 2**_MOVE_BITS
-        w_1 = round((move - gains.get("w_0_V", 0.0) * w_0) / gains["w_1_V"])
-        for off in range(-_NEIGHBOURS, _NEIGHBOURS + 1):
-            yield {f"{axis.name}.w_0_V": w_0, f"{axis.name}.w_1_V": w_1 + off}
+    w_0 = np.arange(0.5 - _STARTS / 2, _STARTS / 2) * (2.0 ** (law.w_bits + 1) / _STARTS)
+    end = 2.0 ** (law.w_bits - 1)
+    last = (w_0 + end) % (2 * end) - end
+    for missing in (sign * end - last - of_w * w_0 for sign in (-1, 1)):
+        nearest = np.argmin(abs(missing))
+        led = round(missing[nearest] / gain)
+        if abs(led) < 2**bits:
+            for off in range(-_NEIGHBOURS, _NEIGHBOURS + 1):
+                rest = (missing[nearest] - gain * led + off) / (1.0 + of_w)
+                yield {f"{axis.name}.w_0_V": round(w_0[nearest] + rest), f"{axis.name}.{lead}": led}
+
+
+def _words_of_move(term: FixedTerm[int], axis: FixedAxis[int], psi: tuple[int, ...]) -> float:
+    """By how many words v moves for one of the term's factor."""
+    coefficient: int = polynomial(term.polynomial, Scalars(), psi, term.coefficient)
+    return float(term.sign * coefficient / 2.0 ** (term.excess - term.doublings + axis.residue_places))
 
 
 def from_random_words(table: ControllerTable, rng: np.random.Generator, lanes: int) -> Stimulus:

@@ -18,7 +18,8 @@ from records.text.units import unit_of
 
 # The parameters of the helicopter's equations that are the limits of an input.
 _LIMITS = {"u_M_V": ("u_min", "u_max"), "u_T_V": ("uT_min", "uT_max")}
-_FIT = "least squares over the operating points, coefficient of Psi^"
+_FIT = "least squares over the operating points, coefficient of {symbol}^{power}"
+_AT_REST = "designed at rest, a constant"
 _OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^{order} in powers of delta"
 
 
@@ -109,7 +110,12 @@ def _constants(table: ControllerTable) -> Iterator[Constant]:
     yield Constant("LAW_PWM_TICKS", PWM_TICKS, "1", f"constant of the board: its timer's ticks of {scales}")
     yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
     yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
-    yield Constant("LEAST_SCHEDULE_RAD", LEAST_SCHEDULE_RAD, "rad", "constant of the method: below it Psi counts as 0")
+    yield Constant(
+        "LEAST_SCHEDULE_RAD",
+        LEAST_SCHEDULE_RAD,
+        "rad",
+        "constant of the method: a scheduling angle below it counts as 0",
+    )
 
 
 def identity(table: ControllerTable, arithmetic: str = "float32") -> Iterator[Constant]:
@@ -133,33 +139,35 @@ def _formats(table: ControllerTable) -> Iterator[Constant]:
     angles = "room for the third difference of an error between a reference and an angle within the limit"
     voltages = "room for the second differences of s and w, of a feedback that an angle within the limit can ask for"
     yield Constant(
-        "LAW_ANGLE_LIMIT_RAD", limit_rad, "rad", "the power of two above the widest reference and a quarter turn"
+        "LAW_ANGLE_LIMIT_RAD", limit_rad, "rad", "the power of two above the widest reference and the room beyond"
     )
     yield Constant("LAW_ANGLE_PLACES", formats.angle_places, "1", angles)
     yield Constant("LAW_VOLTAGE_PLACES", formats.voltage_places, "1", voltages)
 
 
-def _of_power(power: int, unit: str) -> str:
-    return f"{power} [{unit}^-{power}]" if power else "0"
+def _fitted(table: ControllerTable, power: int) -> str:
+    """How a coefficient of this power came about."""
+    if table.schedule is None:
+        return _AT_REST
+    loop = table.loops[table.index(table.schedule.axis)]
+    unit = f" [{unit_of(loop.output)}^-{power}]" if power and loop.output_unit else ""
+    return _FIT.format(symbol=loop.symbol, power=f"{power}{unit}")
 
 
 def _coefficients(table: ControllerTable, loop: Loop, law: AxisLaw) -> Iterator[Constant]:
     axis = loop.axis
-    unit = "" if table.schedule is None else unit_of(table.loops[table.index(table.schedule.axis)].output)
     pole = table.origin.get(axis, {}).get("observer_pole", float("nan"))
     for entry in coefficients(law):
         letter, polynomial = entry.letter, entry.polynomial
         for power, value in enumerate(without_vanishing_powers(polynomial)):
-            made_as = (
-                _OBSERVER.format(pole=pole, order=law.order) if letter == "a" else f"{_FIT}{_of_power(power, unit)}"
-            )
+            made_as = _OBSERVER.format(pole=pole, order=law.order) if letter == "a" else _fitted(table, power)
             name = f"{array_name(loop, entry.name)}[{power}]"
             yield Constant(
                 name, value, coefficient_unit(loop, letter), made_as, axis, letter, entry.index, power, polynomial
             )
     for power, value in enumerate(without_vanishing_powers(law.feedforward_V)):
         name = f"{array_name(loop, 'u_ff_V')}[{power}]"
-        made_as = f"equilibrium voltage, {_FIT}{_of_power(power, unit)}"
+        made_as = f"input at rest, {_fitted(table, power)}" if table.schedule else "input at rest, a constant"
         yield Constant(name, value, coefficient_unit(loop, "u_ff"), made_as, axis, "u_ff", 0, power, law.feedforward_V)
 
 
@@ -176,22 +184,22 @@ def _limits(table: ControllerTable, loop: Loop, law: AxisLaw) -> Iterator[Consta
     yield Constant(
         f"LAW_{voltage}_SAFE{names.voltage_unit}", law.u_safe_V, volt, f"0 {volt}, or the limit nearest to it", axis
     )
-    wish = f"wish of the plant file, [design.{axis}]"
+    wish, left_out = f"wish of the plant file, [design.{axis}]", ", or from schedule or stops"
     yield Constant(
         f"LAW_{angle}_REF_MIN{names.angle_unit}",
         law.reference_min_rad,
         per_count,
-        f"{wish} {own('reference_min_rad')}",
+        f"{wish} {own('reference_min_rad')}{left_out}",
         axis,
     )
     yield Constant(
         f"LAW_{angle}_REF_MAX{names.angle_unit}",
         law.reference_max_rad,
         per_count,
-        f"{wish} {own('reference_max_rad')}",
+        f"{wish} {own('reference_max_rad')}{left_out}",
         axis,
     )
-    sensor = f"encoder step, [sensors.{loop.output}] {own('resolution_rad')}"
+    sensor = f"step of the sensor, [sensors.{loop.output}] {own('resolution_rad')}"
     yield Constant(f"LAW_{angle}_RESOLUTION{names.angle_unit}", law.resolution_rad, per_count, sensor, axis)
     T_s = law.prefilter_time_constant_s
     gain = law.prefilter_gain(table.sample_period_s)

@@ -24,10 +24,10 @@ _LEAST_SENSITIVITY = 1e-6
 
 @dataclass(frozen=True)
 class PointTrace:
-    """One operating point: what was designed there and what the fit gives."""
+    """One operating point, `at` which value of the schedule, the `inputs` at rest: what was designed there and what the fit gives."""
 
-    psi_rad: float
-    u0_V: tuple[float, ...]
+    at: float
+    inputs: tuple[float, ...]
     designed: float
     fitted: float
 
@@ -46,7 +46,10 @@ class ParameterTrace:
 
 @dataclass(frozen=True)
 class Trace:
-    """Where a constant of the C comes from, in the order from the C back to the plant."""
+    """Where a constant of the C comes from, in the order from the C back to the plant.
+
+    `schedule` is the column that the points lie along, empty without a schedule, `inputs` are those of the points.
+    """
 
     name: str
     c_text: str
@@ -54,6 +57,8 @@ class Trace:
     unit: str
     made_as: str
     polynomial: tuple[float, ...]
+    schedule: str
+    inputs: tuple[str, ...]
     points: tuple[PointTrace, ...]
     poles_rad_s: tuple[tuple[float, float], ...]
     free_degree: str | None
@@ -84,6 +89,8 @@ def trace(
         unit=constant.unit,
         made_as=constant.made_as,
         polynomial=constant.polynomial,
+        schedule=_schedule(table),
+        inputs=tuple(loop.input for loop in table.loops),
         points=points,
         poles_rad_s=tuple((pole[0], pole[1]) for pole in own.get("poles_rad_s", ())),
         free_degree=own.get("free_degree"),
@@ -103,11 +110,15 @@ def _points(table: ControllerTable, constant: Constant) -> Iterator[PointTrace]:
     """What was designed at each operating point for the polynomial that holds the constant."""
     if constant.letter not in ("q", "p", "u_ff"):
         return
-    angle = "" if table.schedule is None else table.loops[table.index(table.schedule.axis)].output
+    angle = _schedule(table)
     for index, point in enumerate(table.origin["operating_points"]):
         psi_rad = point.get(angle, 0.0)
         fitted = float(polyval(psi_rad, constant.polynomial))
         yield PointTrace(psi_rad, tuple(point["u0_V"]), _designed(table, constant, index), fitted)
+
+
+def _schedule(table: ControllerTable) -> str:
+    return "" if table.schedule is None else table.loops[table.index(table.schedule.axis)].output
 
 
 def _designed(table: ControllerTable, constant: Constant, point: int) -> float:
@@ -127,7 +138,7 @@ def _parameters(
         yield _told(bound.plant.parameters[constant.parameter], constant.parameter, None)
     if not points:
         return
-    psi_rad = min((point.psi_rad for point in points), key=abs)
+    psi_rad = min((point.at for point in points), key=abs)
     found = []
     for index, (name, parameter, element) in enumerate(_entries(bound)):
         slope = _sensitivity(bound, settings, constant, psi_rad, index)

@@ -53,6 +53,7 @@ def _of_output(
 ) -> Iterator[ErrorResponse]:
     """(1) for one output, its answers (rows, taps) by input: all filters at once by least squares, read off by input and band."""
     steps_s = [flight.step_s for flight in linearisation.case.flights]
+    nyquist_Hz = 0.5 / min(steps_s)
     X = np.hstack([np.concatenate(parts) for parts in answers.values()])
     covariance = np.linalg.pinv(X.T @ X)
     taps = covariance @ (X.T @ np.concatenate(errors))
@@ -62,12 +63,14 @@ def _of_output(
         own = slice(place * parts[0].shape[1], (place + 1) * parts[0].shape[1])
         at_once = [part[:, 0] for part in parts]
         read = cross_power(at_once, parts, steps_s).conj() / np.maximum(power(at_once, steps_s), NO_POWER)[:, None]
-        for band in np.flatnonzero(believed > BELIEVED).tolist():
+        for band in np.flatnonzero((believed > BELIEVED) & (np.array(BANDS_HZ[:-1]) < nyquist_Hz)).tolist():
             error = complex(read[band] @ taps[own])
             sd = float(np.sqrt((read[band] @ covariance[own, own] @ read[band].conj()).real))
             if abs(error) > SURE_DEVIATIONS * sd:
                 low, high = BANDS_HZ[band : band + 2]
-                yield ErrorResponse(output, u, low, high, abs(error), sd, float(np.angle(error)), float(believed[band]))
+                yield ErrorResponse(
+                    output, u, low, min(high, nyquist_Hz), abs(error), sd, float(np.angle(error)), float(believed[band])
+                )
 
 
 def _answers(linearisation: Linearisation, column: int) -> list[Array]:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from records.reasons import Note
+from records.text.units import unit_of
 
 
 def sentences(notes: Sequence[Note]) -> tuple[str, ...]:
@@ -155,8 +156,8 @@ def _restless(note: Note) -> str:
 
 def _coloured_readings(note: Note) -> str:
     return (
-        f"noise of {note.subject}: its readings are off by {note.numbers['sd']:.3g} (one sd) alike over {note.numbers['time_s']:.2g} s, "
-        "as behind a filter or an observer"
+        f"noise of {note.subject}: its readings are off by {note.numbers['sd']:.3g} {unit_of(note.subject) or '1'} (one sd) alike over "
+        f"{note.numbers['time_s']:.2g} s, as behind a filter or an observer"
     )
 
 

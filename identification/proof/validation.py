@@ -5,12 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from design.law import FloatLaw
 from design.settings import read_settings
 from design.table import design
 from records.log import RunLog
+from records.loops import LOOPS
+from records.table import ControllerTable
 from sim.bind import BoundPlant
-from sim.loop import fly_law
-from sim.manoeuvres import flight
+from sim.kernel.law import is_kernel_s
+from sim.loop import Wired, fly, fly_law
+from sim.manoeuvres import Manoeuvre, flight, steps
+from sim.wiring import wiring
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,10 +28,17 @@ class Comparison:
 
 
 def compare_flights(identified: BoundPlant, real: BoundPlant) -> Comparison:
-    """Design from `identified`, fly the project's flight on both; raises BadInput where no controller can be designed."""
+    """Design from `identified`, fly the same on both; raises BadInput where no controller can be designed."""
     table, _ = design(identified, read_settings(identified))
-    manoeuvre = flight(identified, table.sample_period_s)
-    there, here = fly_law(real, table, manoeuvre), fly_law(identified, table, manoeuvre)
+    own_flight = flight(identified, table.sample_period_s) if table.loops == LOOPS else steps(identified, table)
+    there, here = (_flown(bound, table, own_flight) for bound in (real, identified))
     names = (*there.columns.outputs, *there.columns.inputs)
     rms = {name: float(np.sqrt(np.mean((there.column(name) - here.column(name)) ** 2))) for name in names}
     return Comparison(there, here, rms)
+
+
+def _flown(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre) -> RunLog:
+    if is_kernel_s(table):
+        return fly_law(bound, table, manoeuvre)
+    law = Wired(FloatLaw(table), wiring(bound, table.loops))
+    return fly(bound, law, manoeuvre, table_digest=table.digest)

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from identification.results.held import Leaning
 from identification.stages.estimate import Estimate
 from identification.uncertainty.identifiability import Direction
+from identification.uncertainty.residuals import ResidualTest
+from records.text.units import unit_of
 
 LEAST_CHANCE = 1e-300
 MOST_DIRECTIONS = 3
@@ -28,8 +30,7 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
     ]
     coloured = [
         f"{test.run if test.run in title.split(', ') else title}: residuals of {test.channel} are correlated "
-        f"({chance(test.whiteness_p)}, rms {test.rms:.2g}); "
-        "its samples count for fewer"
+        f"({chance(test.whiteness_p)}, rms {_in_its_unit(test)}); its samples count for fewer"
         for test in stage.residuals
         if not test.white
     ]
@@ -38,6 +39,10 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for name in stage.at_bound
     ]
     return (*blind, *bound, *pulled, *against, *coloured)
+
+
+def _in_its_unit(test: ResidualTest) -> str:
+    return f"{test.rms:.2g} {unit_of(test.channel)}".rstrip()
 
 
 def bound_warning(names: Sequence[str]) -> str:

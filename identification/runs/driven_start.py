@@ -11,6 +11,7 @@ from identification.model.subsystem import subsystem
 from identification.runs.run import Carried
 from records.log import RunLog
 from sim.bind import BoundPlant
+from sim.model import Model
 
 Array = NDArray[np.float64]
 FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
@@ -31,7 +32,8 @@ class DrivenStart:
 
 
 def driven_start(bound: BoundPlant, log: RunLog, at_first: ArrayLike | None) -> DrivenStart:
-    """From `at_first` (states,) where it is given, else from rest once that no longer shows, else free in each window.
+    """From `at_first` (states,) where it is given, else from rest, or where they are read from the first reading, once that no longer
+    shows, else free in each window.
 
     Free ones are guessed where the first row's inputs would have brought them; without driven states there is nothing to know.
     """
@@ -43,26 +45,38 @@ def driven_start(bound: BoundPlant, log: RunLog, at_first: ArrayLike | None) -> 
         x0 = np.asarray(at_first, dtype=float)[[model.states.index(state) for state in part.states]]
         return DrivenStart(Carried(own, x0), 0.0, (), known)
     u = np.ascontiguousarray(log.u[:, [model.inputs.index(variable) for variable in part.inputs]])
-    rest = np.zeros(len(part.states))
-    forgotten_s = _forgotten_s(own, log.t_s, u)
+    rest = _first_read(bound, log, part)
+    forgotten_s = _forgotten_s(own, log.t_s, u, rest)
     if forgotten_s <= MOST_WAITED * (log.t_s[-1] - log.t_s[0]):
         return DrivenStart(Carried(own, rest), forgotten_s, (), known)
     held = _run_on(own, log.t_s, np.tile(u[0], (log.t_s.size, 1)), rest)[-1]
-    return DrivenStart(Carried(own, held), 0.0, tuple(map(str, part.states)), _left_of_others(own, log.t_s, u, held))
+    return DrivenStart(
+        Carried(own, held), 0.0, tuple(map(str, part.states)), _left_of_others(own, log.t_s, u, held, rest)
+    )
 
 
-def _forgotten_s(driven: BoundPlant, t_s: Array, u: Array) -> float:
+def _first_read(bound: BoundPlant, log: RunLog, part: Model) -> Array:
+    """The driven states at their first reading, 0 where they have none: from an empty tank no slope may lead."""
+    x0 = np.zeros(len(part.states))
+    for state, y in zip(bound.model.outputs.values(), log.y.T, strict=True):
+        read = y[np.isfinite(y)]
+        if state in part.states and read.size:
+            x0[part.states.index(state)] = read[0]
+    return x0
+
+
+def _forgotten_s(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> float:
     """How long after the first row it still shows with what states the log began: two runs from far starts are compared."""
-    still = _run_on(driven, t_s, u, np.zeros(len(driven.model.states)))
+    still = _run_on(driven, t_s, u, x0)
     reach = np.max(np.abs(still), axis=0)
-    apart = np.flatnonzero(np.any(np.abs(_run_on(driven, t_s, u, reach) - still) > FORGOTTEN * reach, axis=1))
+    apart = np.flatnonzero(np.any(np.abs(_run_on(driven, t_s, u, x0 + reach) - still) > FORGOTTEN * reach, axis=1))
     return float(t_s[apart[-1]] - t_s[0]) if apart.size else 0.0
 
 
-def _left_of_others(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
+def _left_of_others(driven: BoundPlant, t_s: Array, u: Array, x0: Array, rest: Array) -> Array:
     """What is left, row by row (n, driven), of a start as far from x0 (driven,) as any inputs could have brought it."""
     largest = np.tile(_largest_inputs(driven), (t_s.size, 1))
-    reach = np.max(np.abs(_run_on(driven, t_s, largest, np.zeros(x0.size))), axis=0)
+    reach = np.max(np.abs(_run_on(driven, t_s, largest, rest)), axis=0)
     left = np.abs(_run_on(driven, t_s, u, x0 + reach) - _run_on(driven, t_s, u, x0))
     return np.asarray(np.maximum(left, FORGOTTEN * reach))
 

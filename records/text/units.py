@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 Dimension = tuple[int, int, int, int, int]  # powers of kg, m, s, V, K
 
@@ -80,6 +80,11 @@ def unit_suffix(name: str) -> str:
 def unit_of(name: str) -> str:
     """The unit that a column's name ends in, as a person writes it; empty where it states none."""
     return unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s").replace("Nm", "N m")
+
+
+def units_of(names: Iterable[str]) -> str:
+    """The units of several columns, each once, as a person writes them: V, or W and N m; 1 where one states none."""
+    return " and ".join(dict.fromkeys(unit_of(name) or "1" for name in names))
 
 
 def said(name: str, value: float) -> str:

@@ -17,6 +17,7 @@ from records.errors import BadInput
 from records.plant import load_plant
 from records.table import ControllerTable, table_text
 from sim.bind import BoundPlant, bind
+from tests.other_plants import plant_file
 from tests.plants import stated_table
 from twinlaw.command import main
 
@@ -137,9 +138,20 @@ def test_the_verb_lists_traces_and_speaks_json(tmp_path: Path, capsys: pytest.Ca
     assert main(["trace", "azimuth_u_ff_V[0]", "--table", str(path)]) == 0
     told = capsys.readouterr().out
     assert "K_T" in told
-    assert "equilibrium voltage" in told
+    assert "input at rest" in told
     assert main(["trace", "azimuth_p_1[0]", "--table", str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["name"] == "azimuth_p_1[0]"
     assert main(["trace", "azimuth_p_1[0]", "--table", str(path), "--arithmetic", "fixed"]) == 0
     assert "places */ [1]" in capsys.readouterr().out
     assert main(["trace", "nonsense", "--table", str(path)]) == 2
+
+
+def test_a_law_without_schedule_is_traced_in_its_own_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Truth: the motor's law has one point, rest, and one input; no angle of a helicopter's is told."""
+    plant, table = str(plant_file("motor", tmp_path)), str(tmp_path / "controller.json")
+    assert main(["design", "--plant", plant, "--out", str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert main(["trace", "shaft_q_1_V_rad[0]", "--plant", plant, "--table", table]) == 0
+    told = capsys.readouterr().out
+    assert "rest  u 0.0000 V" in told
+    assert not [word for word in ("Psi", "u_M", "least squares") if word in told]

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from design.linearise import linearise, subsystem
-from records.loops import LOOPS
-from sim.equilibrium import equilibrium
+from records.loops import LOOPS, Loop
+from records.plant import load_plant
+from sim.bind import bind
+from sim.equilibrium import OperatingPoint, equilibrium
 from tests.design.helicopter import helicopter
+from tests.own_plants import TWO_HEATERS
 
 
 def linear(psi_deg):
@@ -35,3 +38,16 @@ def test_azimuth_rate_acts_on_the_elevation_as_published(psi_deg):
     names = [symbol.name for symbol in helicopter().model.states]
     found = linear(psi_deg).A[names.index("psi_dot_rad_s"), names.index("phi_dot_rad_s")]
     assert abs(found) == pytest.approx(1.12, abs=6e-3)
+
+
+def test_what_another_loop_measures_is_held_where_nothing_moves(tmp_path):
+    """Truth by hand: of two heated bodies with heat flowing between them, each loop sees its own: T1' = -(G + H)/C T1 + heat/C."""
+    plant = TWO_HEATERS.write(tmp_path, "two_heaters")
+    bound = bind(load_plant(plant))
+    loops = (Loop("left", "T1_K", "heat1_W", "left"), Loop("right", "T2_K", "heat2_W", "right"))
+    whole = linearise(bound, OperatingPoint(0.0, np.zeros(2), np.zeros(2)))
+    for loop in loops:
+        own = subsystem(bound, whole, loop, loops)
+        np.testing.assert_allclose(own.A, np.array([[-0.5 / 30.0]]))
+        np.testing.assert_allclose(own.B, np.array([[1.0 / 30.0]]))
+    assert len(subsystem(bound, whole, loops[0], loops[:1]).A) == 2

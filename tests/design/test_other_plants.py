@@ -103,7 +103,7 @@ def test_an_arm_that_stands_on_its_hinge_is_held(tmp_path: Path) -> None:
     [
         (
             {"arm": {"poles_rad_s": [-4, -5, -6, -7, -8, -9]}},
-            r"arm at theta = 5\.7 deg: poles: got 6 poles of an axis of 2",
+            r"arm at theta = 5\.7 deg: poles: got 6 poles of a loop of 2 states",
         ),
         ({"arm": {"poles_rad_s": [-4, -5, -6, -7], "output": "psi_rad"}}, r"output 'psi_rad'.*theta_rad"),
         ({"schedule": "psi_rad"}, r"schedule: got 'psi_rad'.*theta_rad"),

@@ -5,9 +5,20 @@ import pytest
 
 from design.analysis.margins import margins
 from design.direct_form import DirectForm, controller_poles_z, to_delta, to_direct
-from design.linearise import linearise, subsystem
-from design.loop import closed_loop_poles, open_loop, slowest
-from design.pole_placement import FREE_DEGREES, FreeDegree, characteristic, place, poles_z, sylvester
+from design.discretise import sample
+from design.linearise import LinearPlant, linearise, subsystem
+from design.loop import closed_loop_poles, open_loop, plant_polynomials, slowest
+from design.pole_placement import (
+    FREE_DEGREES,
+    FreeDegree,
+    characteristic,
+    demand_usable,
+    place,
+    placed_in_gamma,
+    poles_z,
+    refined,
+    sylvester,
+)
 from design.schedule import evaluate, schedule_of
 from design.transfer import transfer_function
 from records.errors import BadInput
@@ -113,6 +124,26 @@ def test_a_plant_whose_polynomials_share_a_root_is_refused_as_ill_conditioned():
     a, b = np.convolve(shared, [1.0, -1.8, 0.81]), np.append(0.0, np.convolve(shared, [1.0, 0.2]))
     with pytest.raises(BadInput, match=r"azimuth at 5 deg.*condition number"):
         place(b, a, wanted(EQ8), FREE_DEGREES["q3_zero"], "azimuth at 5 deg")
+
+
+def test_a_plant_of_five_states_slow_beside_its_samples_is_placed_in_gamma():
+    """Truth: three inertias on two springs, 2 ms; eq (26) in z^-1 is refused there, and the poles asked for come out to 1e-3 rad/s."""
+    inertia, spring, friction = np.array([2.4e-3, 1.9e-3, 1.9e-3]), 2.8, 7e-3
+    A, B, C = np.zeros((5, 5)), np.zeros((5, 1)), np.eye(1, 5)  # speeds, then twists
+    A[:3, :3] = -friction * np.diag(1.0 / inertia)
+    A[:3, 3:] = spring * np.array([[-1.0, 0.0], [1.0, -1.0], [0.0, 1.0]]) / inertia[:, np.newaxis]
+    A[3:, :3] = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]
+    B[0] = 1.0 / inertia[0]
+    linear, free = LinearPlant(A, B, C), FREE_DEGREES["integral"]
+    asked = np.array([-6, -7, *(a + s * 1j * w for a, w in ((-5, 20), (-3, 62), (-4, 25), (-4, 61)) for s in (1, -1))])
+    found, plant = transfer_function(linear, 0.002, "motor"), plant_polynomials(sample(linear, 0.002))
+    with pytest.raises(BadInput, match="condition number"):
+        place(found.b, found.a, characteristic(poles_z(asked, 0.002)), free, "motor")
+    placement = placed_in_gamma(plant, asked, free)
+    demand_usable(placement, "motor")
+    exact = refined(plant, to_delta(placement.controller), asked, free)
+    poles = closed_loop_poles(open_loop(plant, exact))
+    assert max(np.min(abs(poles - pole)) for pole in asked) < 1e-3
 
 
 def closed_loop_slowest(q, p, psi_deg=0.0):

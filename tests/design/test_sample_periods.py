@@ -9,6 +9,7 @@ import pytest
 from design.schedule import CONSTANT_Q3_BELOW_S
 from design.settings import SAMPLE_PERIODS_S, read_settings
 from design.table import design
+from records.loops import LOOPS
 from records.plant import load_plant
 from sim.bind import bind
 from sim.equilibrium import equilibrium
@@ -61,6 +62,6 @@ def test_at_the_shortest_period_the_generated_law_flies_as_double_precision_does
     period_s = SAMPLE_PERIODS_S[0]
     table = design(BOUND, replace(read_settings(BOUND), sample_period_s=period_s))[0]
     log = fly(BOUND, host_law(table, arithmetic), flight(BOUND, period_s), table_digest=table.digest)
-    for output in ("psi_rad", "phi_rad"):
-        assert tracking(log, output).overshoot < 0.01
-        assert tracking(log, output).mean_error_rad < np.radians(3.0)
+    for loop in LOOPS:
+        assert tracking(log, loop).overshoot < 0.01
+        assert tracking(log, loop).mean_error_rad < np.radians(3.0)

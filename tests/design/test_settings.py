@@ -68,7 +68,7 @@ BAD = [
     ({"psi_max_rad": 0.8}, r"operating range.*0\.8 rad.*hard stops at \+-0\.785398"),
     ({"elevation": {"reference_max_rad": 0.9}}, r"elevation: reference_min_rad.*hard stops"),
     ({"azimuth": {"reference_min_rad": 1.0, "reference_max_rad": -1.0}}, r"azimuth.*reference range.*empty"),
-    ({"elevation": {"poles_rad_s": [-3, -4, -5]}}, r"elevation\.poles_rad_s.*got 3 poles, expected two .*6 poles"),
+    ({"elevation": {"poles_rad_s": [-3, -4, -5]}}, r"elevation\.poles_rad_s.*got 3 poles, expected two .*10 at most"),
     ({"elevation": {"poles_rad_s": -3}}, r"elevation\.poles_rad_s.*two poles for each state"),
     ({"azimuth": {"poles_rad_s": [-3, -4, -5, -6, -7, 0.0]}}, r"azimuth\.poles_rad_s\[5\].*outside the unit circle"),
     ({"azimuth": {"poles_rad_s": [-3, -4, -5, -6, [1, 2], [1, -2]]}}, r"poles_rad_s\[4\].*outside the unit circle"),

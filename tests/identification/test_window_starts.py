@@ -5,16 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from identification.runs.driven_start import driven_start
 from identification.runs.log_run import run_of
 from identification.runs.prediction import blocks
 from identification.runs.window_starts import crawling, window_starts
 from identification.stages.logs import identify_logs
 from records.log import RunLog
+from records.plant import load_plant
+from sim.bind import bind
 from sim.columns import log_columns
 from sim.model import symbol
 from sim.simulate import simulate
 from tests import plants
 from tests.identification.flights import cut
+from tests.own_plants import TANKS
 from tests.soak import SOAK
 
 
@@ -103,6 +107,23 @@ def test_a_state_that_only_the_inputs_drive_starts_where_they_brought_it_also_wh
     residual = np.concatenate([block.residual for block in blocks(run, (), np.zeros(0))])
     assert len(run.begins) > 10
     assert np.max(np.abs(residual * run.sd)) < 1e-3 * np.ptp(y)
+
+
+def test_a_driven_state_that_is_read_runs_on_from_its_first_reading(tmp_path):
+    """Truth: two tanks that stand at 0.3 and 0.2 m as the log begins. From empty ones, where a root has no slope, nothing is estimated."""
+    path = TANKS.write(tmp_path, "tanks")
+    equations = tmp_path / "tanks.py"
+    read = equations.read_text().replace('outputs={"h2_m": h2}', 'outputs={"h1_m": h1, "h2_m": h2}')
+    equations.write_text(read.replace('sensors={"gauge"', 'sensors={"upper": SensorPlace("h1_m", "m", 1.0), "gauge"'))
+    path.write_text(path.read_text() + "\n[sensors.h1_m]\nresolution_m = 1e-4\n")
+    bound, t_s = bind(load_plant(path)), 0.1 * np.arange(30_000)
+    u = 3.0 + 1.0 * np.sign(np.sin(0.05 * t_s))[:, None]
+    y = simulate(bound, t_s, [0.3, 0.2], u).y
+    log = RunLog(log_columns(bound.model), 0.1, "open", t_s, u, y)
+    begun = driven_start(bound, log, None)
+    np.testing.assert_allclose(begun.carried.x0, [0.3, 0.2], atol=1e-4)
+    point = blocks(run_of(bound, log, "log", np.inf), ("k", "A"), bound.p[[1, 0]])
+    assert all(np.all(np.isfinite(block.by_parameter)) for block in point)
 
 
 def test_an_axis_whose_position_is_no_output_may_start_anywhere():

@@ -224,10 +224,10 @@ def test_an_input_at_its_limit_in_one_stretch_is_told_from_when_to_when() -> Non
     u = log.u.copy()
     u[500:600, 0] = 0.0
     (found,) = _examined(replace(log, u=u)).findings
-    assert found.sentence == "u_M_V is at its limits: 5.0% of the rows at 0, all from 5 s to 5.99 s"
+    assert found.sentence == "u_M_V is at its limits: 5.0% of the rows at 0 V, all from 5 s to 5.99 s"
     u[700:800, 0] = 0.0
     (found,) = _examined(replace(log, u=u)).findings
-    assert found.sentence == "u_M_V is at its limits: 10.0% of the rows at 0"
+    assert found.sentence == "u_M_V is at its limits: 10.0% of the rows at 0 V"
 
 
 @pytest.mark.parametrize(("cut", "how"), [(np.minimum, "exceeds"), (np.maximum, "falls below")])
@@ -236,7 +236,7 @@ def test_an_input_that_is_cut_off_within_the_plants_limits_is_noted(cut: Callabl
     limit = float(np.median(log.u[:, 0]))
     (found,) = _examined(_column(log, "u_M_V", cut(log.u[:, 0], limit))).findings
     assert (found.kind, found.column, found.severity) == ("clipped", "u_M_V", "note")
-    assert f"u_M_V never {how} {limit:.5g}, where 50.0% of its rows stand" in found.sentence
+    assert f"u_M_V never {how} {limit:.5g} V, where 50.0% of its rows stand" in found.sentence
 
 
 def test_an_input_of_steps_is_not_called_cut_off() -> None:

@@ -95,7 +95,7 @@ def test_every_variant_changes_the_setup_and_says_so() -> None:
     plain = Setup(ce150_table())
     assert all(entry.change(plain) != plain for entry in found)
     assert grid_step(0.02 * np.round(np.random.default_rng(1).uniform(0, 400, 500))) == pytest.approx(0.02)
-    assert "0.0125" in steps_in_words([0.0125, 0.0125])
+    assert steps_in_words(("heat_W", "u_V"), [0.0125, 0.0125]) == "0.0125 W and 0.0125 V"
 
 
 def test_a_log_cut_out_of_a_flight_is_told_to_begin_in_flight() -> None:

@@ -8,7 +8,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.equilibrium import equilibrium, rest_with
 from sim.kernel.reference import reference
-from tests.own_plants import TANKS
+from tests.own_plants import HEATER, TANKS
 
 U_M0_V = {
     -45: 4.653,
@@ -82,6 +82,15 @@ def test_a_plant_without_positions_rests_where_what_it_measures_is_wanted(tmp_pa
     np.testing.assert_allclose(point.u0, [1e-4 * np.sqrt(2 * 9.81 * 0.4) / 5e-5], rtol=1e-9)
     with pytest.raises(BadInput, match=r"at 4 m: input u_V.*0 to 12 V"):
         rest_with(bound, [0], [4.0])
+
+
+def test_a_plant_without_positions_rests_also_with_an_effect_that_is_flat_elsewhere(tmp_path):
+    """Truth by hand: heat = G T = 4 W holds 5 K, below the 5 W at which the heater saturates; beyond, no slope leads there."""
+    path = HEATER.write(tmp_path, "heater")
+    entry = '\n[effects.heater.saturation.limit]\nvalue = 5.0\nsd = 0.0\nunit = "W"\nsource = "a test"\n'
+    path.write_text(path.read_text() + entry)
+    point = rest_with(bind(load_plant(path)), [0], [5.0])
+    np.testing.assert_allclose(point.u0, [4.0], rtol=1e-6)
 
 
 def test_of_a_plant_with_positions_those_that_are_measured_are_held(bound):

@@ -18,6 +18,7 @@ from controllers.table import CONTROLLERS
 from design.structure import demand_helicopter
 from records.files import write_atomic
 from records.quality import quality_facts
+from records.table import AXES
 from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.pages.compare import tables
@@ -77,7 +78,7 @@ def run(chosen: argparse.Namespace) -> int:
         print(json.dumps(content))
     else:
         print(console.table(tables.cost_rows(rows), tables.cost_heading(rows)))
-        for axis in ("elevation", "azimuth"):
+        for axis in AXES:
             print(f"\n{axis}, {wanted.trial.runs} plants within +-10 %")
             print(console.table(tables.spread_rows(rows, axis), tables.SPREAD_HEADING))
         print(f"\n{console.table(tables.quality_rows(rows), tables.QUALITY_HEADING)}")

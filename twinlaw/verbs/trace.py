@@ -11,10 +11,10 @@ from pathlib import Path
 from codegen.traceability.origin import Trace, names, trace
 from controllers.loading import load_scheduled
 from design.settings import read_settings
+from records.text.units import label, unit_of
 from twinlaw.cli import console, options
 from twinlaw.workflows.reading import load_bound
 
-POINT_HEADING = ("Psi", "u_M0, u_T0", "designed", "fitted", "difference")
 PARAMETER_HEADING = ("parameter", "value", "sd", "unit", "influence", "source")
 
 
@@ -52,19 +52,32 @@ def trace_text(found: Trace) -> str:
         poles = ", ".join(f"{re:g}{im:+g}j" if im else f"{re:g}" for re, im in found.poles_rad_s)
         parts.append(f"  poles placed at {poles} rad/s, free degree: {found.free_degree}")
     if found.points:
-        polynomial = " ".join(f"{coefficient:+.6g} Psi^{power}" for power, coefficient in enumerate(found.polynomial))
-        parts += [f"  polynomial {polynomial}", "", console.table(_point_rows(found), POINT_HEADING)]
+        parts += [f"  polynomial {_polynomial(found)}"] if found.schedule else []
+        heading = (_symbol(found.schedule) or "at", "inputs at rest", "designed", "kept", "difference")
+        parts += ["", console.table(_point_rows(found), heading)]
     if found.parameters:
         parts += ["", console.table(_parameter_rows(found), PARAMETER_HEADING)]
     parts += ["", f"plant {found.plant}, digest {found.plant_digest[:16]}"]
     return "\n".join(parts)
 
 
+def _symbol(column: str) -> str:
+    return label(column).partition(" [")[0]
+
+
+def _polynomial(found: Trace) -> str:
+    symbol = _symbol(found.schedule)
+    return " ".join(f"{coefficient:+.6g} {symbol}^{power}" for power, coefficient in enumerate(found.polynomial))
+
+
 def _point_rows(found: Trace) -> list[tuple[str, ...]]:
     return [
         (
-            f"{point.psi_rad:+.4f} rad",
-            ", ".join(f"{voltage:.4f} V" for voltage in point.u0_V),
+            f"{point.at:+.4g} {unit_of(found.schedule)}".rstrip() if found.schedule else "rest",
+            ", ".join(
+                f"{_symbol(column)} {value:.4f} {unit_of(column)}".rstrip()
+                for column, value in zip(found.inputs, point.inputs, strict=True)
+            ),
             f"{point.designed:.9g}",
             f"{point.fitted:.9g}",
             f"{point.fitted - point.designed:+.2g}",

@@ -2,12 +2,12 @@
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
-from codegen.fixed.constants import fixed_constants, word_number
+from codegen.fixed.constants import FixedLaw, FixedPolynomial, fixed_constants, word_number
 from codegen.law_frame import without_vanishing_powers
 from records.table import ControllerTable
 
@@ -68,25 +68,41 @@ class Judgement:
 def said_of(table: ControllerTable, arithmetic: str) -> frozenset[str]:
     """What a deviation may ask of a table and of the law made of it."""
     feedforwards = [without_vanishing_powers(axis.feedforward_V) for axis in table.axes]
+    coefficients = [without_vanishing_powers(p) for axis in table.axes for p in (*axis.q_V_rad, *axis.p)]
+    lines = [p for p in (*feedforwards, *coefficients) if len(p) == 2]
     asked = {
         "no schedule": table.schedule is None,
         "no feed-forward": not any(feedforwards),
+        "every line goes through zero": not any(line[0] for line in lines),
         "one state": table.order == 1,
         "a difference that no term reads": any(not without_vanishing_powers(axis.p[-1]) for axis in table.axes)
         or any(len(axis.p) <= table.order for axis in table.axes),
-        **(_said_of_products(table) if arithmetic == "fixed" else {}),
+        "one state, no difference read": table.order == 1
+        and not any(without_vanishing_powers(p) for axis in table.axes for p in axis.p[1:]),
+        **(_said_of_words(table) if arithmetic == "fixed" else {}),
     }
     return frozenset(words for words, holds in asked.items() if holds)
 
 
-def _said_of_products(table: ControllerTable) -> dict[str, bool]:
-    terms = [term for axis in fixed_constants(table, word_number).axes for term in axis.terms]
+def _said_of_words(table: ControllerTable) -> dict[str, bool]:
+    law = fixed_constants(table, word_number)
+    terms = [term for axis in law.axes for term in axis.terms]
     short = [term.polynomial for term in terms if term.is_short]
+    ends = [end for axis in law.axes for end in (axis.reference_min_rad, axis.reference_max_rad)]
     return {
         "no narrow product": not any(term.is_narrow for term in terms),
+        "no power by two half products": not any(part.products == 2 for form in _polynomials(law) for part in form.powers),
         "no long product": all(term.is_short or term.is_narrow for term in terms),
         "no negative short coefficient": all(form.constant >= 0 and not form.powers for form in short),
+        "references within the sensors' range": all(law.angle_min_rad < end < law.angle_max_rad for end in ends),
+        "references filtered in half words": all(axis.reference_doublings == 1 for axis in law.axes),
     }
+
+
+def _polynomials(law: FixedLaw[int]) -> Iterator[FixedPolynomial[int]]:
+    for axis in law.axes:
+        yield axis.feedforward_V
+        yield from (term.polynomial for term in axis.terms)
 
 
 def load_deviations(path: Path, arithmetic: str, said: frozenset[str] = frozenset()) -> tuple[Deviation, ...]:

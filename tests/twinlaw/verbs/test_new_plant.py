@@ -259,3 +259,17 @@ def test_a_state_that_is_faster_than_a_sample_is_followed_and_told(
     omega_rad_s = np.genfromtxt(tmp_path / "simulation.csv", delimiter=",", names=True)["omega_rad_s"]
     assert np.isfinite(omega_rad_s).all()
     assert np.ptp(omega_rad_s) > 10.0
+
+
+def test_a_plant_that_is_known_is_flown_beside_what_was_identified_of_it(tmp_path: Path) -> None:
+    """Truth: the heater's own log; the controller of the identified one flies both alike, to a tenth of a degree and a watt."""
+    assert main(["new-plant", "heated", "--like", "heater", "--out", str(tmp_path)]) == 0
+    plant, out = str(tmp_path / "plant.toml"), tmp_path / "out"
+    assert main(["simulate", "--plant", plant, "--out", str(out)]) == 0
+    assert main(["identify", "--plant", plant, "--truth", plant, "--out", str(out), str(out / "simulation.csv")]) == 0
+    flown = json.loads((out / "identification.json").read_text())["flight_rms"]
+    assert set(flown) == {"T_K", "heat_W"}
+    assert 0.0 <= flown["T_K"] < 0.1
+    assert flown["heat_W"] < 1.0
+    report = (out / "report.html").read_text()
+    assert not [word for word in ("elevation", "azimuth", "psi", "u_M") if word in report]

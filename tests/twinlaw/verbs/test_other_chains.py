@@ -35,6 +35,9 @@ def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     assert {row["axis"] for row in found["poles"]} == {
         key for key, entry in WISHES[name].items() if isinstance(entry, dict)
     }
+    schedule = WISHES[name].get("schedule")
+    stated = {key for row in found["poles"] for key in row if key.startswith("at_")}
+    assert stated == ({f"at_{schedule}"} if schedule else set())
     assert sorted(path.name for path in (tmp_path / "generated").iterdir()) == [
         "law.c", "law.h", "law_self_test.c", "protocol.c", "protocol.h",
     ]  # fmt: skip
@@ -44,6 +47,24 @@ def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     log = load_log(tmp_path / "simulation.csv", log_columns(load_bound(Path(plant)).model))
     assert np.isfinite(log.y).all()
     assert log.table_digest == found["table_digest"]
+
+
+def test_an_output_that_no_loop_closes_has_no_reference_and_is_not_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Truth: two outputs, one input; the law closes the second output alone, which holds four references."""
+    plant = plant_file("motor", tmp_path)
+    equations = tmp_path / "dc_motor.py"
+    measured = equations.read_text().replace('outputs={"theta', 'outputs={"omega_rad_s": OMEGA, "theta')
+    speed = '"speed_sensor": SensorPlace("omega_rad_s", "rad s^-1", 50.0), "theta_sensor"'
+    equations.write_text(measured.replace('"theta_sensor"', speed))
+    named = plant.read_text().replace("[design.shaft]", '[design.shaft]\noutput = "theta_rad"')
+    plant.write_text(f"{named}\n[sensors.omega_rad_s]\nresolution_rad_s = 0.1\n")
+    assert main(["simulate", "--plant", str(plant), "--out", str(tmp_path), "--json"]) == 0
+    ((output, found),) = json.loads(capsys.readouterr().out)["tracking"].items()
+    assert (output, found["input"], found["holds"]) == ("theta_rad", "u_V", 4)
+    log = load_log(tmp_path / "simulation.csv", log_columns(load_bound(plant).model))
+    assert set(log.extra) == {"theta_ref_rad"}
 
 
 @pytest.mark.soak

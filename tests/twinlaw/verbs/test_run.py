@@ -15,6 +15,7 @@ from serial import SerialException
 
 from recordings.datasets.files import datasets_folder
 from records.log import RunLog, load_log, save_log
+from records.loops import LOOPS
 from records.table import ControllerTable, load_table
 from rig.emulator.ports.serial_port import EmulatedSerial
 from sim.bind import BoundPlant
@@ -111,8 +112,8 @@ def test_the_flight_tracks_within_two_percent_and_a_twentieth_of_a_degree(out: P
     assert log.table_digest == load_table(out / "controller.json").digest
     assert np.degrees(log.extra["psi_ref_rad"].min()) == pytest.approx(-30.0, abs=0.05)
     assert np.degrees(log.extra["psi_ref_rad"].max()) == pytest.approx(30.0, abs=0.05)
-    for output in ("psi_rad", "phi_rad"):
-        found = tracking(log, output)
+    for loop in LOOPS:
+        found = tracking(log, loop)
         assert found.holds >= 10
         assert found.overshoot <= 0.02
         assert np.degrees(found.steady_error_rad) <= 0.05

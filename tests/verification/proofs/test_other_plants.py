@@ -1,6 +1,7 @@
 """Proofs on a law without schedule and feed-forward whose loop measures metres and commands amperes, at 200 Hz, without pins."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -11,10 +12,15 @@ from codegen.protocol_source import protocol_source
 from records.loops import Loop
 from records.protocol import protocol_of
 from records.table import AxisLaw, ControllerTable
+from verification.fixed_stimuli import EDGES
+from verification.host_law import HostLaw
 from verification.proofs.behaviour import proof as behaviour
 from verification.proofs.conformance import coverage
 from verification.proofs.mutation import proof as mutation
+from verification.proofs.mutation.judge import stepped, stimuli_of
+from verification.proofs.mutation.mutants_python import PythonMutant, mutated_twin, python_mutants
 from verification.proofs.mutation.proof import c_score
+from verification.proofs.mutation.twin import Truth, is_table_noticed
 from verification.proofs.rounding import proof as rounding
 from verification.proofs.subject import Subject
 from verification.proofs.tools import CLANG, FRAMA_C, GAPPA
@@ -41,6 +47,11 @@ TABLE = ControllerTable(
     schedule=None,
     axes=(AXIS,),
     loops=(Loop("carriage", "q_m", "u_A", "carriage"),),
+)
+# Of one state no difference of w leads v to the end of its range; references on one side of zero are no rest at zero.
+ONE_STATE = replace(
+    TABLE,
+    axes=(replace(AXIS, q_V_rad=((0.03,), (0.4,)), p=((0.0,),), a=(0.1,), u_min_V=0.0, reference_min_rad=0.2),),
 )
 MOTION = Motion((6.0,), (30.0,))
 ARITHMETICS = ("float32", "fixed")
@@ -112,3 +123,29 @@ def test_no_mutant_of_its_c_survives(arithmetic: str, monkeypatch: pytest.Monkey
     score = c_score(subject(arithmetic))
     assert score.tried > 80
     assert score.survivors == ()
+
+
+def test_what_holds_a_law_of_one_state_at_the_ends_of_its_words_is_noticed_by_the_edges_alone() -> None:
+    """Truth: each change of the limits of v, or of what is carried to the next sample, is another law."""
+    stimuli = [stimulus for stimulus in stimuli_of(ONE_STATE, "fixed", 100) if stimulus.name == EDGES]
+    truths = [
+        Truth(stimuli, stepped(HostLaw(generate_law(ONE_STATE, "fixed"), "fixed", loops=ONE_STATE.loops), stimuli))
+    ]
+    changes = [
+        mutant
+        for mutant in python_mutants("fixed")
+        if any(
+            line in mutant.source
+            for line in ("<= value <", "(value < 2**bits)", "value & ((1 << places)", "value & (2**places")
+        )
+    ]
+    assert len(changes) > 15
+    survivors = [str(mutant) for mutant in changes if not _is_noticed(mutant, truths)]
+    assert survivors == []
+
+
+def _is_noticed(mutant: PythonMutant, truths: list[Truth]) -> bool:
+    try:
+        return is_table_noticed(mutated_twin("fixed", mutant)(ONE_STATE), truths)
+    except Exception:  # a twin that stops is noticed
+        return True

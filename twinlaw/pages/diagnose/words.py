@@ -9,15 +9,15 @@ from diagnosis.explain.sentences import plain_sentence
 from records.diagnosis import Diagnosis, Hypothesis
 from records.functional_class import Dependence, parse_class
 from records.reasons import DOUBTS, Note
+from records.text.units import label, unit_of
 from sim.added_effects import every_effect
 
-# By the unit at the end of a name: how a person reads it.
+# By the unit at the end of a name: how a person reads it, where not in that unit.
 _SHOWN = {
     "_rad": ("deg", 180.0 / math.pi),
     "_rad_s": ("deg/s", 180.0 / math.pi),
     "_m": ("mm", 1e3),
     "_m_s": ("mm/s", 1e3),
-    "_V": ("V", 1.0),
 }
 _UNITS = {"-": "", "1": "", "rad rad^-1": "per rad", "m m^-1": "per m"}
 # By the word before the brackets of a class: what of the rig changes.
@@ -81,7 +81,8 @@ def shown(name: str) -> tuple[str, str, float]:
     for suffix, (unit, scale) in _SHOWN.items():
         if name.endswith(suffix):
             return name.removesuffix(suffix), f"[{unit}]", scale
-    return name, "", 1.0
+    unit = unit_of(name)
+    return label(name).partition(" [")[0], f"[{unit}]" if unit else "", 1.0
 
 
 def plain_notes(notes: Sequence[Note]) -> list[str]:

@@ -11,6 +11,8 @@ from identification.results.quality import identification_quality
 from identification.results.result import Identification
 from identification.stages.estimate import Estimate
 from records.experiment import Experiment
+from records.text.units import label, shown
+from sim.columns import reference_name
 from twinlaw.pages.identify.residuals import fit_section
 from twinlaw.pages.identify.summary import (
     AID_HEADING,
@@ -146,20 +148,18 @@ def _gravity(experiment: Experiment, result: Identification) -> Section:
 def flight_section(comparison: Comparison) -> Section:
     """Both flights over one another."""
     real, here = comparison.real, comparison.identified
-    names = (("psi_rad", "elevation [deg]"), ("phi_rad", "azimuth [deg]"), ("u_M_V", "u_M [V]"), ("u_T_V", "u_T [V]"))
     panels = []
-    for name, label in names:
-        scale = 180.0 / np.pi if name.endswith("_rad") else 1.0
-        wanted = name.replace("_rad", "_ref_rad")
+    for name in (*real.columns.outputs, *real.columns.inputs):
+        (unit, scale), wanted = shown(name), reference_name(name)
         curves = [
             *([Curve(real.t_s, scale * real.column(wanted), "reference", GREY, ":")] if wanted in real.extra else []),
             Curve(real.t_s, scale * real.column(name), "real plant", GREEN),
             Curve(here.t_s, scale * here.column(name), "identified", RED, "--"),
         ]
-        panels.append(Panel(label, tuple(curves)))
+        panels.append(Panel(f"{label(name).partition(' [')[0]} [{unit}]", tuple(curves)))
     rows = [(name, measured(value, name)) for name, value in comparison.rms.items()]
     return Section(
-        "Validation in the control structure (Fig. 13)",
+        "Validation in the control structure",
         ("One controller, designed from the identified plant, flies the real plant and the identified one.",),
         (Table(rows, ("column", "rms difference")),),
         (stack(panels, "time [s]"),),

@@ -7,6 +7,7 @@ from typing import Any
 from design.analysis.migration import SlowestPole
 from design.report import AxisReport, DesignReport
 from records.text.units import said
+from records.verification import at_own_schedule
 from twinlaw.pages.page import Row
 
 _DESIGN_HEADING: Row = (
@@ -67,19 +68,19 @@ def _where(report: DesignReport, at: float) -> str:
 
 def design_facts(report: DesignReport) -> dict[str, Any]:
     """The same for a program."""
-    axes = report.axes
+    axes, column = report.axes, report.scheduled_by if report.is_scheduled else None
     return {
         "arithmetic": report.arithmetic,
-        "poles": report.pole_entries(),
-        "after_fit": {axis.axis: _slowest(axis.after_fit) for axis in axes},
+        "poles": [at_own_schedule(entry, column) for entry in report.pole_entries()],
+        "after_fit": {axis.axis: _slowest(axis.after_fit, column) for axis in axes},
         "fit_error": {axis.axis: asdict(axis.fit_error) for axis in axes},
         "worst_margins": {axis.axis: _finite(asdict(axis.worst_margins)) for axis in axes},
-        "coupled": _slowest(report.coupled),
+        "coupled": _slowest(report.coupled, column),
     }
 
 
-def _slowest(pole: SlowestPole) -> dict[str, float]:
-    return {"worst_slowest_rad_s": pole.worst_rad_s, "at_psi_rad": pole.at_psi_rad}
+def _slowest(pole: SlowestPole, column: str | None) -> dict[str, float]:
+    return at_own_schedule({"worst_slowest_rad_s": pole.worst_rad_s, "at_psi_rad": pole.at_psi_rad}, column)
 
 
 def degrees(angle_rad: float) -> str:

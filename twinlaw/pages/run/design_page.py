@@ -23,8 +23,8 @@ LOOKS = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (RED, ":"))  # of the loops
 
 def design_page(plant: str, report: DesignReport, digest: str) -> Page:
     """The whole page of `twinlaw design`; a design that does not keep its margins is refused, so there is no page of one."""
-    angles = len(report.psi_rad)
-    held = f"stable, and no margin below the plant file's, at {angles} angles, as its {report.arithmetic} table flies"
+    where = f"at {len(report.psi_rad)} points of the schedule" if report.is_scheduled else "at rest"
+    held = f"stable, and no margin below the plant file's, {where}, as its {report.arithmetic} table flies"
     quality = Quality((flag(held, Colour.GREEN),))
     return Page(
         title=f"{plant}: the controller as designed",

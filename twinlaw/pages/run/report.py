@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from design.report import DesignReport
 from design.trade_off import TradePoint
 from records.log import RunLog
+from records.loops import LOOPS, Loop
 from records.quality import Colour, flag
 from records.text.units import label, shown, unit_of
 from records.verification import Verification
@@ -23,6 +24,7 @@ from twinlaw.pages.run.roll_off import roll_off_section
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_rows
 
 Array = NDArray[np.float64]
+# The helicopter's columns by what they are of.
 _NAMES = {
     "psi_rad": "elevation Psi",
     "phi_rad": "azimuth Phi",
@@ -31,8 +33,8 @@ _NAMES = {
 }
 
 _OF_SEVERAL = (
-    "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; beside "
-    "them how far the other axis' steps push it out of rest, how far its input travels, and how often that turns round."
+    "Overshoot and steady error are of a loop's own steps, as its sensor shows them, while the others rest; beside them how far "
+    "the others' steps push it out of rest, how far its input travels, and how often that turns round."
 )
 _OF_ONE = (
     "Overshoot and steady error are of the steps of its reference, as its sensor shows them; beside them how far its input travels, "
@@ -61,7 +63,7 @@ def run_page(
         why=quality_sentence(quality),
         facts=(("Controller table", verification.table_digest),),
         sections=(
-            _flight(log, tracking, counters),
+            _flight(log, report.loops, tracking, counters),
             _verified(verification, sizes),
             *design_sections(report),
             *roll_off_section(trade),
@@ -70,20 +72,23 @@ def run_page(
     )
 
 
-def flight_plot(log: RunLog) -> str:
-    """Angles with their references, and all inputs, over time, as SVG text."""
-    columns = log.columns
-    angles = [(_told(output), output, reference_name(output)) for output in columns.outputs]
-    inputs = [(_told(name), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
+def flight_plot(log: RunLog, loops: Sequence[Loop] = LOOPS) -> str:
+    """Outputs, those of loops with their references, and all inputs, over time, as SVG text."""
+    columns, names = log.columns, _NAMES if tuple(loops) == LOOPS else {}
+    inputs = [(_told(name, names), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
     panels = [
         Panel(
-            f"{name} [{shown(output)[0]}]",
-            (
-                Curve(log.t_s, shown(output)[1] * log.column(output), "measured", BLUE),
-                Curve(log.t_s, shown(output)[1] * log.column(reference), "reference", ORANGE, "--"),
-            ),
+            f"{_told(output, names)} [{shown(output)[0]}]",
+            [
+                Curve(log.t_s, shown(output)[1] * log.column(name), how, colour, line)
+                for name, how, colour, line in (
+                    (output, "measured", BLUE, "-"),
+                    (reference_name(output), "reference", ORANGE, "--"),
+                )
+                if name == output or name in log.extra
+            ],
         )
-        for name, output, reference in angles
+        for output in columns.outputs
     ]
     panels += [
         Panel(f"{name} [{unit_of(column) or 1}]", (Curve(log.t_s, log.column(column), "", colour),))
@@ -92,23 +97,24 @@ def flight_plot(log: RunLog) -> str:
     return stack(panels, "time [s]")
 
 
-def _told(column: str) -> str:
-    """The column's name for a reader; the helicopter's by what it is of."""
-    return _NAMES.get(column, label(column).partition(" [")[0])
+def _told(column: str, names: Mapping[str, str]) -> str:
+    """The column's name for a reader, from `names` where it has one."""
+    return names.get(column, label(column).partition(" [")[0])
 
 
-def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
+def _flight(log: RunLog, loops: Sequence[Loop], tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
     faults = [f"{name} {count}" for name, count in counters.items() if count and name != "frames_accepted"]
     return Section(
         "Flight",
         (
-            "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
-            "emulated STM32G071: what is measured goes to the board through its serial line, inputs come back, one frame each per sample.",
+            "The nonlinear plant, with its sensors' steps and what dry friction and stops it has, in the loop with the unmodified firmware "
+            "image on the emulated STM32G071: what is measured goes to the board through its serial line, inputs come back, one frame each "
+            "per sample.",
             *([_OF_SEVERAL] if len(tracking) > 1 else [_OF_ONE]),
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
         (Table(tracking_rows(tracking), TRACKING_HEADING),),
-        (flight_plot(log),),
+        (flight_plot(log, loops),),
     )
 
 

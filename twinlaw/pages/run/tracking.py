@@ -19,7 +19,7 @@ TRACKING_HEADING: Row = (
     "settling",
     "steady error",
     "mean |error|",
-    "pushed by the other axis",
+    "pushed by other loops",
     "input",
     "travel",
     "reversals",
@@ -27,8 +27,11 @@ TRACKING_HEADING: Row = (
 )
 
 
+_ROUNDING = 1e-9
+
+
 def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
-    """One row per output: worst overshoot, longest time to settle, worst mean error at rest, mean error, push of the other axis; its
+    """One row per output: worst overshoot, longest time to settle, worst mean error at rest, mean error, push of other loops; its
     input's activity.
     """
     return [
@@ -39,7 +42,7 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             settling_text(entry.settling_s),
             _told(entry, entry.steady_error_rad, 3),
             _told(entry, entry.mean_error_rad),
-            _told(entry, entry.push_rad) if len(tracking) > 1 else "no other axis",
+            _told(entry, entry.push_rad) if len(tracking) > 1 else "no other loop",
             entry.input,
             f"{entry.activity.travel_V_s:.2f} {unit_of(entry.input)}/s",
             f"{entry.activity.reversals_1_s:.1f} /s",
@@ -61,8 +64,10 @@ def tracking_looks(entry: Tracking) -> tuple[Look, ...]:
 
 
 def _told(entry: Tracking, value: float, digits: int = 2) -> str:
-    """An error as a person reads it: an angle's in degrees, anything else's in its unit."""
-    return f"{math.degrees(value):.{digits}f} deg" if entry.is_angle else f"{value:.3g} {unit_of(entry.output)}"
+    """An error as a person reads it: an angle's in degrees, anything else's in its unit, 0 where it is but rounding of the steps."""
+    if entry.is_angle:
+        return f"{math.degrees(value):.{digits}f} deg"
+    return f"{value if value > _ROUNDING * entry.step_rad else 0.0:.3g} {unit_of(entry.output)}".rstrip()
 
 
 def _steady(entry: Tracking) -> Look:

@@ -20,7 +20,7 @@ from sim.loop import Wired, fly
 from sim.wiring import wiring
 from twinlaw.cli.console import stage, tally
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
-from twinlaw.workflows.chain.flying import ChainFlight, flight_of, tracked
+from twinlaw.workflows.chain.flying import ChainFlight, chain_flight, flight_of
 from verification.equality import compare
 from verification.host_law import HostLaw
 from verification.stateless import Stateless
@@ -88,4 +88,4 @@ def fly_board(bound: BoundPlant, table: FlownTable, client: BoardClient) -> Chai
         controller = Wired(BoardController(client, lambda: tell(False, False)), wires)
         log = fly(bound, controller, whole, table_digest=table.digest)
     client.disarm()
-    return ChainFlight(log, tracked(log), client.counters())
+    return chain_flight(log, table.loops, client.counters())

@@ -1,7 +1,7 @@
 """Design as the verbs run it: a plant file goes in, a controller's table and the report on it come out."""
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,6 @@ from design.trade_off import TradePoint, trade_off
 from records.errors import BadInput, VerificationFailed
 from records.law_table import LawTable
 from records.table import ControllerTable
-from records.text.units import said
 from records.verification import PoleMigration
 from sim.bind import BoundPlant
 from twinlaw.cli.console import stage
@@ -88,7 +87,7 @@ def _computable(where: str) -> Iterator[None]:
 def poles_of(report: DesignReport) -> tuple[PoleMigration, ...]:
     """The report's poles as verification.json states them."""
     column = report.scheduled_by if report.is_scheduled else None
-    return tuple(_placed(entry, column) for entry in report.pole_entries())
+    return tuple(PoleMigration(**entry, scheduled_by=column) for entry in report.pole_entries())
 
 
 def table_poles(bound: BoundPlant, table: ControllerTable, arithmetic: str = "float32") -> tuple[PoleMigration, ...]:
@@ -102,9 +101,4 @@ def table_poles(bound: BoundPlant, table: ControllerTable, arithmetic: str = "fl
         settings = read_settings(bound)
         entries = poles_on(bound, settings, table, ARITHMETICS[arithmetic].rounding)
         column = None if table.schedule is None else table.loops[table.index(table.schedule.axis)].output
-        return tuple(_placed(entry, column) for entry in entries)
-
-
-def _placed(entry: Mapping[str, Any], column: str | None) -> PoleMigration:
-    """The entry, with where on the schedule by this column it is."""
-    return PoleMigration(**entry, at="" if column is None else said(column, entry["at_psi_rad"]))
+        return tuple(PoleMigration(**entry, scheduled_by=column) for entry in entries)

@@ -1,7 +1,7 @@
 """Flights of the simulated plant under a table's law, in double precision or as generated."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,10 +9,10 @@ from controllers import loading
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import RunLog
-from records.loops import LOOPS
+from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from sim.bind import BoundPlant
-from sim.columns import log_columns
+from sim.columns import log_columns, reference_name
 from sim.halving import StepError, step_error
 from sim.kernel.law import is_kernel_s
 from sim.loop import Wired, fly, fly_law
@@ -47,7 +47,7 @@ def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
         else:
             law = Wired(loading.row_of(table).float_law(table), wires)
             log = fly(bound, law, whole, table_digest=table.digest)
-    return ChainFlight(log, tracked(log), {})
+    return chain_flight(log, table.loops)
 
 
 def flight_of(bound: BoundPlant, table: FlownTable) -> Manoeuvre:
@@ -83,7 +83,7 @@ def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlig
     law = Wired(HostLaw(loading.generate(table, arithmetic), arithmetic, loops=table.loops), wires)
     with stage(f"flying the generated law in {arithmetic}"):
         log = fly(bound, law, flight_of(bound, table), table_digest=table.digest)
-    return ChainFlight(log, tracked(log), {})
+    return chain_flight(log, table.loops)
 
 
 def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
@@ -97,6 +97,9 @@ def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
         return step_error(bound, whole.t_s, whole.x0, law.controller(whole.t_s.size), reference=whole.reference_rad)
 
 
-def tracked(log: RunLog) -> tuple[Tracking, ...]:
-    """How well each output followed its reference."""
-    return tuple(tracking(log, output) for output in log.columns.outputs)
+def chain_flight(log: RunLog, loops: Sequence[Loop], counters: Mapping[str, int] | None = None) -> ChainFlight:
+    """A flight and how well each loop followed its reference; an output without a loop has none in the log."""
+    own = {reference_name(loop.output) for loop in loops}
+    others = {reference_name(output) for output in log.columns.outputs} - own
+    kept = replace(log, extra={name: values for name, values in log.extra.items() if name not in others})
+    return ChainFlight(kept, tuple(tracking(kept, loop) for loop in loops), counters or {})

@@ -81,7 +81,7 @@ def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, do
     if not names:
         raise BadInput(
             "parameters", ", ".join(logs), f"{', '.join(lost)}, which show only in what was not recorded",
-            f"a reading of {', '.join(unread(bound.model, logs))}", "record it, or free parameters of the other axis",
+            f"a reading of {', '.join(unread(bound.model, logs))}", "record it, or free parameters that show in what was",
         )  # fmt: skip
     fits: list[Estimate] = []
     found, so_many = done, f"{len(names)} parameters" + (f", {len(lost)} others held" if lost else "")
