@@ -49,8 +49,7 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_collection_finish() -> None:
-    """All that was imported stays until the end: who looks for rubbish need not walk through it again and again."""
-    gc.collect()
+    """All that was imported stays until the end: who looks for rubbish need not walk through it, not even once."""
     gc.freeze()
     gc.set_threshold(20_000)  # objects, where 700 are usual: equations are trees of many small ones
     gc.enable()

@@ -20,6 +20,9 @@ SENSITIVITY = ("sensitivity.c", "events.c")
 BATCH = ("batch.c", "events.c")
 # One run has nothing to lay side by side: a compiler that looks for that and more takes twice as long, and what it makes is no faster.
 ONE_RUN_FLAGS = ("-O1", "-fno-vectorize", "-fno-slp-vectorize")
+# Inside each caller short equations run faster; longer ones than this run no faster and take the compiler three times as long.
+LONG_EQUATIONS = 16_000  # characters of C
+EQUATIONS_ONCE_FLAGS = ("-DEQUATIONS_ONCE",)
 MANY_RUNS_FLAGS = ("-DMANY_RUNS",)
 HEADERS = ("request.h", "law_table.h", "sensitivity.h", "exports.h")
 BATCH_LANES = 8
@@ -76,6 +79,8 @@ def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
         *(C_DIR / file for file in files),
     ]
     own = MANY_RUNS_FLAGS if files is BATCH else ONE_RUN_FLAGS
+    if files is SINGLE and len(_header(model)) > LONG_EQUATIONS:
+        own = (*own, *EQUATIONS_ONCE_FLAGS)
     flags = (*FAST_FLAGS, *own, f"-DBATCH_LANES={BATCH_LANES}")
     return build_shared(name, sources, include_dirs=[C_DIR], flags=flags)
 
