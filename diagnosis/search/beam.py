@@ -107,7 +107,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         fit_twins(case, found, _best(found))
         if _best(found).evidence <= best[0].evidence:
             break
-    _settle(case, found)
+    _settle(case, found, first)
     certain = [entry for entry in found.values() if _certain(entry, found)]
     fitted = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
     rules = _rules(found, certain, fitted[0])
@@ -184,10 +184,11 @@ def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> li
     return [Job(start, entry) for entry in score_tests if entry.gain > least]
 
 
-def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
+def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: FittedHypothesis) -> None:
     """Once more the best of all with the twins of the first, until effects and all noise agree: a fit not yet at its end would lose to one
-    with an idle effect."""
+    with an idle effect. What is far from the best is left as it is."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
+    best = [entry for entry in best if _within_reach(entry, best[0], nominal)]
     twins = [entry for entry in best if is_twin(case, entry, best[0])]
     asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.SETTLED_FITS], *twins])]
     for step in (refined, once_more, with_own_events):
@@ -195,6 +196,12 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
         keep_better(found, [end for end in ends if end is not None])
     finalists = _finalists(case, [found[frozenset(entry.effects)] for entry in best])
     keep_better(found, with_noise_beside(case, finalists))
+
+
+def _within_reach(fitted: FittedHypothesis, best: FittedHypothesis, nominal: FittedHypothesis) -> bool:
+    """Whether a better fit may bring a hypothesis to the best: near it, or with a good share of its gain."""
+    short, gain = best.evidence - fitted.evidence, best.evidence - nominal.evidence
+    return short <= max(decisions.NEAR_BEST, (1.0 - decisions.WORTH_REFINING) * gain)
 
 
 def _finalists(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
