@@ -32,8 +32,8 @@ EFFECTS = [
 def library(plant: BoundPlant) -> EffectLibrary:
     """That of the CE150 without effects that bring a state, whose filter takes ten seconds to build: of the arm a test asks for all."""
     whole = effect_library(plant)
-    kept = {name: effect for name, effect in whole.effects.items() if name not in (*whole.wide_names, *whole.bristles)}
-    return replace(whole, effects=kept, wide_names=(), bristles=())
+    kept = {name: effect for name, effect in whole.effects.items() if name not in whole.wide_names}
+    return replace(whole, effects=kept, wide_names=())
 
 
 def logged(log: RunLog, slip: Misplaced) -> RunLog:

@@ -1,7 +1,7 @@
 """What is an effect's own stands with the effect: no machinery knows one by its name, its kind or the symbol of a number."""
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import pytest
 
@@ -58,17 +58,16 @@ def _texts(nodes: Iterator[ast.expr | None]) -> Iterator[str]:
     return (node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str))
 
 
-def _literals(module: ast.Module) -> Iterator[str]:
+def _literals(nodes: Sequence[ast.AST]) -> Iterator[str]:
     """All strings of a module but its docstrings, pieces of f-strings among them."""
-    nodes = list(ast.walk(module))
     documented = [node for node in nodes if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)]
     docstrings = {id(node.body[0].value) for node in documented if node.body and isinstance(node.body[0], ast.Expr)}
     return _texts(node for node in nodes if isinstance(node, ast.Constant) and id(node) not in docstrings)
 
 
-def _keys(module: ast.Module) -> Iterator[str]:
+def _keys(nodes: Sequence[ast.AST]) -> Iterator[str]:
     """Strings by which a number could be asked for: in brackets, before a colon, compared, listed, or asked of `get`."""
-    for node in ast.walk(module):
+    for node in nodes:
         if isinstance(node, ast.Subscript):
             yield from _texts(iter([node.slice]))
         elif isinstance(node, ast.Dict):
@@ -83,8 +82,9 @@ def _keys(module: ast.Module) -> Iterator[str]:
 
 def _named(module: ast.Module) -> set[str]:
     """What of the library a module knows: names and kinds alone or behind a dot in any string, symbols where they could be asked for."""
-    named = {text for text in _literals(module) if text in NAMES or text in KINDS or text.rpartition(".")[2] in KINDS}
-    return named | ({*_keys(module)} & SYMBOLS) - {TIME_COLUMN}
+    nodes = list(ast.walk(module))
+    named = {text for text in _literals(nodes) if text in NAMES or text in KINDS or text.rpartition(".")[2] in KINDS}
+    return named | ({*_keys(nodes)} & SYMBOLS) - {TIME_COLUMN}
 
 
 def test_no_machinery_names_an_effect() -> None:

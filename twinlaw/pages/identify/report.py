@@ -17,6 +17,7 @@ from twinlaw.pages.identify.residuals import fit_section
 from twinlaw.pages.identify.summary import (
     AID_HEADING,
     FIT_HEADING,
+    SCALE,
     aid_rows,
     estimate_heading,
     estimate_rows,
@@ -67,7 +68,7 @@ def _estimates(result: Identification, truth: Mapping[str, float] | None) -> Sec
     tables = [Table(estimate_rows(result.estimates, result.at_bound, truth), estimate_heading(truth))]
     if result.aids:
         tables.append(Table(aid_rows(result.aids), AID_HEADING))
-    return Section("Parameters", result.notes or ("Nothing to remark.",), tuple(tables))
+    return Section("Parameters", (*(result.notes or ("Nothing to remark.",)), SCALE), tuple(tables))
 
 
 def _correlation(result: Identification) -> list[Section]:

@@ -16,6 +16,9 @@ HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
 AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
 FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated", "")
 
+# Beside the table of estimates, for whoever compares an interval with the value and the sd.
+SCALE = "A parameter that must be positive is taken as normal by its logarithm: its interval is one of factors, and ends above zero."
+
 
 def estimate_heading(truth: Mapping[str, float] | None) -> tuple[str, ...]:
     """The heading of `estimate_rows`."""

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from identification.fit.belief import NOTHING, Belief
 from identification.results.facts import facts
-from identification.results.result import Identification, identification, interrupted
+from identification.results.result import Identification, identification, interrupted, positive_coefficients
 from identification.stages.estimate import Estimate
 from records.files import write_atomic
 from records.plant import Plant, save_plant
+from sim.bind import bind
 from twinlaw.cli import console
 
 Save = Callable[[Identification], None]
@@ -32,7 +33,9 @@ class Done:
 
     def result(self, plant: Plant) -> Identification:
         """All of it put into the plant."""
-        return identification(plant, self.stages, self.belief, self.aids)
+        # A plant that is matched to responses has a model of its own kind, and no stages.
+        positive = positive_coefficients(bind(plant).model) if self.stages else ()
+        return identification(plant, self.stages, self.belief, self.aids, positive=positive)
 
 
 class Progress:

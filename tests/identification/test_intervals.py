@@ -1,0 +1,48 @@
+"""Intervals of what is estimated: those of parameters that must be positive end above zero, all others are value and reach."""
+
+import numpy as np
+import pytest
+
+from identification.fit.belief import Belief
+from identification.results.result import NORMAL, Identification, identification, interval, positive_coefficients
+from tests.plants import bound
+
+SHARE = 0.25  # of a value is its sd: poor, and yet told
+
+
+def found(**sd: float) -> Identification:
+    """The aeroshield with these coefficients as stated, each known to so much."""
+    rig = bound("aeroshield")
+    plant, positive = rig.plant, positive_coefficients(rig.model)
+    values = np.array([plant.parameters[name].value for name in sd])
+    began = dict(zip(sd, values.tolist(), strict=True))
+    belief = Belief(tuple(sd), values, np.diag(np.square(list(sd.values()))))
+    return identification(plant, (), belief, begun=began, positive=positive)
+
+
+def test_an_interval_of_a_positive_parameter_is_one_of_factors_and_ends_above_zero() -> None:
+    # Truth: of ln K the sd is SHARE, so both ends are K e^(-+1.96 SHARE); of c, which may be 0, they are c -+ 1.96 sd.
+    stated = bound("aeroshield").plant.parameters
+    K, c = stated["K"].value, stated["c"].value
+    positive, other = found(K=SHARE * K, c=SHARE * c).estimates
+    assert positive.lower == pytest.approx(K * np.exp(-NORMAL * SHARE))
+    assert positive.upper == pytest.approx(K * np.exp(NORMAL * SHARE))
+    assert (other.lower, other.upper) == pytest.approx((c - NORMAL * SHARE * c, c + NORMAL * SHARE * c))
+
+
+def test_that_of_one_the_data_do_not_tell_ends_above_zero_too() -> None:
+    # Truth: the file states K as 0.01 with an sd of 0.02, which reaches below zero.
+    (kept,) = found(K=1.0).estimates
+    assert not kept.identified
+    assert (kept.value, kept.sd) == (0.01, 0.02)
+    assert 0.0 < kept.lower < kept.value < kept.upper
+
+
+def test_where_little_is_open_both_are_the_same() -> None:
+    # Truth: e^r = 1 + r to r^2 / 2.
+    assert interval(2.0, 0.02, positive=True) == pytest.approx((1.98, 2.02), abs=2.0 * 0.01**2)
+
+
+def test_a_reach_beyond_all_bounds_is_still_a_number() -> None:
+    lower, upper = interval(1e-3, 1e9, positive=True)
+    assert 0.0 < lower < upper < np.inf
