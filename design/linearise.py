@@ -54,7 +54,7 @@ def subsystem(bound: BoundPlant, linear: LinearPlant, loop: Loop, loops: Sequenc
         states = ", ".join(str(model.states[row]) for row in rows) or "none"
         raise BadInput(
             f"{loop.axis} axis", f"plant {bound.plant.name!r}", f"{len(rows)} states between {loop.input} and {loop.output}: {states}",
-            f"1 to {ORDERS[-1]} that the input moves and that move the angle",
+            f"1 to {ORDERS[-1]} that the input moves and that move the output",
             "choose another operating range, or another input for this loop",
         )  # fmt: skip
     return LinearPlant(

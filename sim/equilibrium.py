@@ -149,8 +149,12 @@ def _solve(bound: BoundPlant, x: Array, u: Array) -> tuple[Array, Array] | None:
     equations, signs = reference(model), np.zeros(len(model.axes))
     for _ in range(MAX_ITERATIONS):
         at = (0.0, x, u, bound.p, signs)
-        rates = equations.rates(*at)[rows]
-        step = _newton_step(np.hstack([equations.A(*at)[np.ix_(rows, free)], equations.B(*at)[rows]]), rates)
+        with np.errstate(all="ignore"):
+            rates = equations.rates(*at)[rows]
+            slopes = np.hstack([equations.A(*at)[np.ix_(rows, free)], equations.B(*at)[rows]])
+        if not (np.all(np.isfinite(rates)) and np.all(np.isfinite(slopes))):
+            return None
+        step = _newton_step(slopes, rates)
         x[free], u = x[free] - step[: len(free)], u - step[len(free) :]
         if np.all(np.abs(step) <= STEP_TOLERANCE * (1.0 + np.abs(np.concatenate([x[free], u])))):
             return (x, u) if np.max(np.abs(rates)) <= RATE_TOLERANCE else None
@@ -186,7 +190,7 @@ def _check_inputs(bound: BoundPlant, u0: Array, where: str) -> None:
                 where,
                 f"{value:.4g} {unit_of(str(variable))} needed to rest there",
                 f"{lower:g} to {upper:g} {unit_of(str(variable))}",
-                "choose a position that the inputs can hold",
+                "choose a rest that the inputs can hold",
             )
 
 

@@ -53,7 +53,7 @@ def _of_output(
 ) -> Iterator[ErrorResponse]:
     """(1) for one output, its answers (rows, taps) by input: all filters at once by least squares, read off by input and band."""
     steps_s = [flight.step_s for flight in linearisation.case.flights]
-    nyquist_Hz = 0.5 / min(steps_s)
+    nyquist_Hz = float(f"{0.5 / min(steps_s):.6g}")  # times are sums, whose steps differ by rounding
     X = np.hstack([np.concatenate(parts) for parts in answers.values()])
     covariance = np.linalg.pinv(X.T @ X)
     taps = covariance @ (X.T @ np.concatenate(errors))

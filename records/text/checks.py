@@ -22,7 +22,7 @@ def keys(section: Mapping[str, Any], where: str, required: Iterable[str], option
             raise BadInput(f"key {key!r}", where, "nothing", "a value", f"add {key!r}")
     for key in section:
         if key not in required and key not in optional:
-            known = ", ".join(repr(name) for name in (*required, *optional))
+            known = ", ".join(repr(name) for name in dict.fromkeys((*required, *optional)))
             raise BadInput(
                 f"key {_shown(key)}", where, "an unknown key", f"one of {known}", f"remove or rename {_shown(key)}"
             )

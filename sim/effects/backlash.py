@@ -27,7 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"play of {short(sensor.output)}",
             parameters=(EffectParameter("width", sensor.unit, 0.0, 0.3 * size, 0.006 * size, 0.0, grid),),
             equation="y follows the angle through a play of the given width",
-            story="The encoder's coupling has play: after a reversal it stands still for a moment.",
+            story="The sensor's coupling has play: after a reversal it stands still for a moment.",
             source="play operator",
             prior=COMMON,
             on_output=lambda values, output=output: Play(output, values["width"]),

@@ -25,7 +25,7 @@ def effects(model: Model) -> Iterator[Effect]:
                 EffectParameter("w", "1", 0.0, 3.0, 0.0, None, (0.5,), refining=True),
             ),
             equation=f"{u} -> sgn({u}) max(|{u}| - d, 0), its corner rounded over d (1 -+ w)",
-            story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
+            story="The driver ignores small commands, so the plant always gets a little less than it was told.",
             source="static driver nonlinearity (H bridge, dry motor)",
             prior=COMMON,
             applied=lambda d, w, u=u: {u: sympy.sign(u) * _passed(sympy.Abs(u), d, w * d + SHARP)},

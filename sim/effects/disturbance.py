@@ -28,7 +28,7 @@ def effects(model: Model) -> Iterator[Effect]:
                 ),
             ),
             equation=f"+ torque for t_0 <= t < t_0 + duration, edges {EDGE_S:g} s",
-            story="Someone or something pushed the arm during the run.",
+            story="Someone or something pushed it during the run.",
             source="a push by hand",
             prior=COMMON,
             edit=lambda model, torque, t_0, duration, axis=axis: with_torque(

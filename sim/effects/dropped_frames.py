@@ -20,7 +20,7 @@ def effects(model: Model) -> Iterator[Effect]:
         depends="lost updates of " + " and ".join(str(entry.variable) for entry in model.places.inputs.values()),
         parameters=(EffectParameter("p", "-", 0.0, 0.9, 0.1, 0.0, (0.05, 0.1, 0.2), role=Role.LOSS),),
         equation="u(k) = u(k - 1) with probability p",
-        story="Now and then a command gets lost and the rotor keeps the last one.",
+        story="Now and then a command gets lost and the plant keeps the last one.",
         source="a lossy line with zero-order hold",
         prior=COMMON,
         on_input=lambda values: DroppedFrames(values["p"]),

@@ -34,7 +34,7 @@ def _one_sided(model: Model, axis: str, side: str, equation: str) -> Effect:
             EffectParameter("a", entry.length_unit, 0.005, FARTHEST, 0.1, starts=STARTS),
         ),
         equation=equation,
-        story=f"Something soft pushes the arm back from its {side} stop: rubber, foam or a cable that becomes taut.",
+        story=f"Something soft pushes it back from its {side} stop: rubber, foam or a cable that becomes taut.",
         source="a one-sided spring",
         edit=lambda model, k, a: with_torque(model, axis, k * _pressed(model, axis, side, a)),
         twins={f"{axis}.cable_spring": "where the whole flight lies within its reach, both are one spring"},

@@ -29,7 +29,7 @@ def effects(model: Model) -> Iterator[Effect]:
                 EffectParameter("zeta", "-", 0.003, 1.0, 0.05),
             ),
             equation="y = angle + gain d, d'' + 2 zeta omega_n d' + omega_n^2 d = - angle''",
-            story="Between the axis and its encoder something is springy and rings after every jolt.",
+            story="Between the axis and its sensor something is springy and rings after every jolt.",
             source="two masses and a spring",
             prior=COMMON,
             edit=lambda model, gain, omega_n, zeta, axis=axis: _edit(model, gain, omega_n, zeta, axis),

@@ -39,7 +39,7 @@ def effects(model: Model) -> Iterator[Effect]:
                 EffectParameter("offset", entry.unit, -0.2 * entry.size, 0.2 * entry.size, 0.02 * entry.size, 0.0),
             ),
             equation=f"{u} -> {u} + offset",
-            story="The driver's zero is off: the rotor is pushed a little even when it is told nothing.",
+            story="The driver's zero is off: the plant is pushed a little even when it is told nothing.",
             source="a driver's calibration",
             prior=RARE,
             applied=lambda offset, u=u: {u: u + offset},

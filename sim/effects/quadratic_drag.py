@@ -32,7 +32,7 @@ def effects(model: Model) -> Iterator[Effect]:
                 ),
             ),
             equation=f"- c |{angle}'| {angle}'",
-            story="The air resists the moving arm, four times as much at twice the speed.",
+            story="The air resists the motion, four times as much at twice the speed.",
             source="drag of a bluff body",
             prior=COMMON,
             term="abs(speed) speed",

@@ -65,7 +65,7 @@ def effects(model: Model) -> Iterator[Effect]:
                 ),
             ),
             equation="y = q round(angle/q)",
-            story="The encoder's steps are coarser than stated.",
+            story="The sensor's steps are coarser than stated.",
             source="an encoder's resolution",
             prior=COMMON,
             on_output=lambda values, output=output: OutputSteps(output, values["q"]),

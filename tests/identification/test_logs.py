@@ -9,7 +9,7 @@ import pytest
 from identification.fit.belief import Belief, stated
 from identification.runs.log_run import run_of
 from identification.search.methods import Search
-from identification.stages.best_fit import apart_sd, best_fit
+from identification.stages.best_fit import apart_sd, best_fit, nothing_left
 from identification.stages.estimate import interval_factor
 from identification.stages.logs import identify_logs
 from recordings.datasets.files import datasets_folder
@@ -53,6 +53,15 @@ def test_jittered_times_and_lost_samples_do_no_harm(bound, flown):
     found = identify_logs(off(bound, {"J_A": 1.2, "b_vA": 0.8}), {"log": log}, ("J_A", "b_vA"))
     assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
     assert found.belief.value("b_vA") == pytest.approx(bound.parameter("b_vA"), rel=0.02)
+
+
+def test_a_whole_log_that_claims_more_than_numbers_hold_is_not_believed(bound, flown):
+    """Truth: white residuals alone are what a right model leaves; an sd of 1e-15 of its value is what grown slopes make of rounding."""
+    found = replace(identify_logs(bound, {"flight": cut(flown, 64.0, 4.0)}, ("b_vE",), window_s=0.4), residuals=())
+    belief = found.belief
+    assert nothing_left(found)
+    surer = replace(belief, covariance=(1e-15 * belief.mean / belief.sd) ** 2 * belief.covariance)
+    assert not nothing_left(replace(found, belief=surer))
 
 
 def test_an_axis_that_was_locked_stands_still_at_its_readings(bound):

@@ -4,6 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from sympy import Symbol, sympify
+
+from sim.model import Model
 from sim.places import Places
 
 WIDTH, HEIGHT = 128.0, 44.0  # of a block, px
@@ -23,14 +26,17 @@ class Block:
     share: float
 
 
-def block_diagram(places: Places, shares: Mapping[str, float]) -> str:
+def block_diagram(model: Model, shares: Mapping[str, float]) -> str:
     """The diagram: input, rotor, axis and sensor blocks in columns, arrows where one acts on another, the control loop below."""
+    places = model.places
     columns = [tuple(group) for group in (places.inputs, places.rotors, places.axes, places.sensors) if group]
     margin = EDGE + (SIDE if places.loop else 0.0)
     blocks = _placed(columns, shares, margin)
     width = 2 * margin + len(columns) * WIDTH + (len(columns) - 1) * COLUMN_GAP
     floor = max(block.y for block in blocks.values()) + HEIGHT
-    parts = [_arrow(blocks[a], blocks[b], main) for a, b, main in _edges(places)]
+    edges = _edges(places)
+    edges += _pushed(model, edges)
+    parts = [_arrow(blocks[a], blocks[b], main) for a, b, main in edges if b in blocks]
     if places.loop:
         loop = Block(LOOP, (width - WIDTH) / 2, floor + ROW_GAP, shares.get(LOOP, 0.0))
         parts += _way_back([blocks[name] for name in columns[-1]], [blocks[name] for name in columns[0]], loop)
@@ -74,6 +80,29 @@ def _edges(places: Places) -> list[tuple[str, str, bool]]:
         if place.output == moved.angle
     ]
     return edges
+
+
+def _pushed(model: Model, edges: Sequence[tuple[str, str, bool]]) -> list[tuple[str, str, bool]]:
+    """Where no part of a name is between: from an input to the axes that its equations push, or where nothing moves to the sensors."""
+    begun, found = {a for a, _, _ in edges}, []
+    for name, place in model.places.inputs.items():
+        if name not in begun:
+            reached = _reached(model, place.variable)
+            axes = [axis.name for axis in model.axes if sympify(axis.torque).free_symbols & reached]
+            read = {str(output) for output, y in model.outputs.items() if sympify(y).free_symbols & reached}
+            ends = axes or [sensor for sensor, place in model.places.sensors.items() if place.output in read]
+            found += [(name, end, True) for end in ends]
+    return found
+
+
+def _reached(model: Model, variable: Symbol) -> set[Symbol]:
+    """The input, and every state off the axes that it moves."""
+    reached = {variable}
+    while True:
+        more = {state for state, rate in model.rates.items() if sympify(rate).free_symbols & reached} - reached
+        if not more:
+            return reached
+        reached |= more
 
 
 def _box(block: Block) -> str:

@@ -153,6 +153,7 @@ def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
     for value, label in panel.limits:
         axes.axhline(value, color=GREY, linestyle=":", linewidth=1.0, label=label or None)
     axes.set_ylabel(panel.ylabel)
+    axes.ticklabel_format(axis="y", useOffset=False)  # a sum above the panel is read by nobody
     if panel.within is not None:
         axes.set_ylim(*panel.within)
     if legend and axes.get_legend_handles_labels()[1]:

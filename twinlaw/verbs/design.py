@@ -51,7 +51,7 @@ def run(chosen: argparse.Namespace) -> int:
     designed = design_controller(chosen.plant, chosen.arithmetic)
     path = chosen.out / "controller.json"
     write_atomic(path, table_text(designed.table))
-    page = design_page(chosen.plant.stem, designed.report, designed.table.digest)
+    page = design_page(designed.bound.plant.name, designed.report, designed.table.digest)
     write_atomic(chosen.out / "design.html", page_text(page))
     if chosen.json:
         print(json.dumps({"table": str(path), "table_digest": designed.table.digest, **design_facts(designed.report)}))

@@ -1,8 +1,8 @@
 """Begin a plant of your own in a folder anywhere: its equations NAME.py, and beside them plant.toml with its parameters.
 
 Both work as they are and say what to change for another rig: an axis, an input, an output, a schedule. --like names what they begin as: an
-arm on a hinge, a motor whose speed is measured, or a heater, where nothing moves. Every verb takes DIR/plant.toml as its --plant, and
-docs/new-plant.md goes on from there. Files that are there already are not touched.
+arm on a hinge, a motor whose speed is measured, a heater, where nothing moves, or a tank that runs out by the root of its level. Every
+verb takes DIR/plant.toml as its --plant, and docs/new-plant.md goes on from there. Files that are there already are not touched.
 """
 
 import argparse

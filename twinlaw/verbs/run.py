@@ -58,7 +58,7 @@ def run(chosen: argparse.Namespace) -> int:
     flight = _flown(designed, chosen)
     save_log(out / "run.csv", flight.log)
     page = run_page(
-        chosen.plant.stem,
+        designed.bound.plant.name,
         designed.report,
         verification,
         image.sizes,

@@ -11,7 +11,7 @@ from toolchain.templates import text_templates
 from twinlaw.templates import TEMPLATES
 
 # What a plant can begin as: the templates new_plant/BEGINNING.py.j2 and .toml.j2. The first is the default.
-BEGINNINGS = ("arm", "motor", "heater")
+BEGINNINGS = ("arm", "motor", "heater", "tank")
 
 WINDOWS_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
 

@@ -91,7 +91,9 @@ def _said_of_words(table: ControllerTable) -> dict[str, bool]:
     ends = [end for axis in law.axes for end in (axis.reference_min_rad, axis.reference_max_rad)]
     return {
         "no narrow product": not any(term.is_narrow for term in terms),
-        "no power by two half products": not any(part.products == 2 for form in _polynomials(law) for part in form.powers),
+        "no power by two half products": not any(
+            part.products == 2 for form in _polynomials(law) for part in form.powers
+        ),
         "no long product": all(term.is_short or term.is_narrow for term in terms),
         "no negative short coefficient": all(form.constant >= 0 and not form.powers for form in short),
         "references within the sensors' range": all(law.angle_min_rad < end < law.angle_max_rad for end in ends),

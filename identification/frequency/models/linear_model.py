@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from design.linearise import linearise
+from design.settings import read_settings
 from identification.fit.ranges import Range, ranges_of
 from identification.frequency.lateral import STATES, StateSpace, state_space
 from identification.runs.run import coefficient_names
 from records.errors import BadInput
 from records.plant import Plant
 from sim.bind import BoundPlant
-from sim.equilibrium import equilibrium
+from sim.equilibrium import rest_with
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -93,14 +94,15 @@ class LateralModel:
 
 @dataclass(frozen=True, eq=False)
 class OperatingPointModel:
-    """A plant of this project, linearised where its axes rest at `positions`; the rest point is found anew for each theta.
+    """A plant of this project, linearised where it rests with the outputs at `places` at `values`; that point is found anew for each theta.
 
     `ranges` hold the free parameters: outside them there is no such plant.
     """
 
     bound: BoundPlant
     ranges: Mapping[str, Range]
-    positions: tuple[float, ...]
+    places: tuple[int, ...]
+    values: tuple[float, ...]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -147,7 +149,7 @@ class OperatingPointModel:
         p[self._places] = theta
         moved = replace(self.bound, p=p)
         try:
-            linear = linearise(moved, equilibrium(moved, *self.positions))
+            linear = linearise(moved, rest_with(moved, self.places, self.values))
         except (BadInput, FloatingPointError):
             return None
         return StateSpace(linear.A, linear.B, linear.C, np.zeros((linear.C.shape[0], linear.B.shape[1])))
@@ -176,12 +178,20 @@ def operating_point_model(
     means: Mapping[str, float],
     limits: Mapping[str, tuple[float, float]] | None = None,
 ) -> OperatingPointModel:
-    """The plant where its axes rest at the `means` of their outputs; the free parameters within `limits`, by default a fifth to five times.
+    """The plant where it rests at the `means` of its outputs; the free parameters within `limits`, by default a fifth to five times.
 
-    Raises BadInput for an unknown parameter or a plant that cannot rest there.
+    Of axes with positions that is by these, of a plant without one by what its loops measure, or where none are named by as many of its
+    outputs as it has inputs. Raises BadInput for an unknown parameter or a plant that cannot rest there.
     """
-    outputs = {expression: output for output, expression in bound.model.outputs.items()}
+    outputs = list(map(str, bound.model.outputs))
     arms = [axis.position for axis in bound.model.axes if axis.position is not None]
-    positions = tuple(means[outputs[position]] for position in arms)
-    equilibrium(bound, *positions)
-    return OperatingPointModel(bound, ranges_of(bound, names, limits), positions)
+    if arms:
+        held = [output for output, y in zip(outputs, bound.model.outputs.values(), strict=True) if y in arms]
+    elif bound.plant.design:
+        held = [loop.output for loop in read_settings(bound).loops]
+    else:
+        held = outputs[: len(bound.model.inputs)]
+    places = tuple(map(outputs.index, held))
+    values = tuple(means[output] for output in held)
+    rest_with(bound, places, values)
+    return OperatingPointModel(bound, ranges_of(bound, names, limits), places, values)

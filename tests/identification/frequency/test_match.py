@@ -19,6 +19,8 @@ from identification.proof.monte_carlo import coverage
 from identification.proof.monte_carlo_frequency import repetition
 from records.errors import BadInput
 from records.plant import load_plant
+from sim.bind import bind
+from tests.own_plants import TANKS
 from tests.plants import PLANTS, bound
 from tests.soak import SOAK, sampled
 
@@ -247,3 +249,11 @@ def test_a_direct_part_is_read_a_row_after_its_input():
     omega, zero = np.array([0.5, 20.0]), np.zeros((1, 1))
     direct = StateSpace(zero - 1.0, zero, zero, zero + 3.0)
     np.testing.assert_allclose(held_response(direct, omega, 0.05)[:, 0, 0], 3.0 * np.exp(-0.05j * omega), rtol=1e-12)
+
+
+def test_a_plant_without_positions_is_linearised_where_its_readings_rest(tmp_path):
+    """Truth by hand: at 0.4 m the first tank stands at 0.8 m, and both flows change by s sqrt(2 g 0.4) / 0.8 a metre between or out."""
+    tanks = bind(load_plant(TANKS.write(tmp_path, "tanks")))
+    model = operating_point_model(tanks, ("s",), {"h2_m": 0.4})
+    slope = 1e-4 * np.sqrt(2.0 * 9.81 * 0.4) / 0.8 / 0.015
+    np.testing.assert_allclose(model.matrices(model.start).A, slope * np.array([[-1.0, 1.0], [1.0, -2.0]]), rtol=1e-6)

@@ -1,10 +1,13 @@
 """The block diagram shows the whole way round: every sensor to the loop, and the loop to every input."""
 
 import re
+from pathlib import Path
 
 import pytest
 
-from sim.places import Places
+from records.plant import load_plant
+from sim.bind import bind
+from tests.own_plants import PLAIN, TWO_HEATERS
 from tests.plants import bound
 from twinlaw.pages.block_diagram import HEIGHT, SIDE, WIDTH, block_diagram
 
@@ -21,8 +24,8 @@ def corner_of(drawn: str, place: str) -> tuple[float, float]:
 
 @pytest.mark.parametrize("plant", ["ce150", "aeroshield"])
 def test_every_sensor_leads_to_the_loop_and_the_loop_to_every_input(plant: str) -> None:
-    places: Places = bound(plant).model.places
-    drawn = block_diagram(places, {})
+    model = bound(plant).model
+    places, drawn = model.places, block_diagram(model, {})
     lines, loop = points_of(drawn), corner_of(drawn, "loop")
     for name in places.sensors:
         x, y = corner_of(drawn, name)
@@ -33,3 +36,16 @@ def test_every_sensor_leads_to_the_loop_and_the_loop_to_every_input(plant: str) 
         ways = [line for line in lines if line[-1] == (x - 2, y + HEIGHT / 2)]
         assert [line[0] for line in ways] == [(loop[0], loop[1] + HEIGHT / 2)]
         assert ways[0][1][0] == x - SIDE
+
+
+def test_an_input_without_a_rotor_leads_to_what_its_equations_push(tmp_path: Path) -> None:
+    """Truth: the arm's motor pushes the arm; of two bodies in touch each heater warms both, which both probes read."""
+    arm = bind(load_plant(PLAIN.write(tmp_path / "arm", "arm"))).model
+    plate = bind(load_plant(TWO_HEATERS.write(tmp_path / "plate", "plate"))).model
+    for model, ends in ((arm, tuple(arm.places.axes)), (plate, ("left_probe", "right_probe"))):
+        drawn = block_diagram(model, {})
+        for name in model.places.inputs:
+            x, y = corner_of(drawn, name)
+            begun = [line for line in points_of(drawn) if line[0] == (x + WIDTH, y + HEIGHT / 2)]
+            reached = {(left + 2, middle - HEIGHT / 2) for ((_, _), (left, middle)) in begun}
+            assert reached == {corner_of(drawn, end) for end in ends}

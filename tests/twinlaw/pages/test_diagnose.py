@@ -100,11 +100,11 @@ def text_of(
     widths: dict[str, float] | None = None,
     logs: tuple[Predicted, ...] = (),
 ) -> str:
-    places = bind(load_plant(ROOT / "plants" / "ce150.toml")).model.places
+    model = bind(load_plant(ROOT / "plants" / "ce150.toml")).model
     page = diagnosis_page(
         "ce150",
         diagnosis,
-        places,
+        model,
         STORIES,
         logs,
         ("a.csv", "b.csv"),

@@ -22,10 +22,16 @@ LOOPS = {
     "arm": ("arm", "theta_rad", "u_V"),
     "motor": ("shaft", "omega_rad_s", "u_V"),
     "heater": ("body", "T_K", "heat_W"),
+    "tank": ("tank", "h_m", "u_V"),
 }
 
 SCHEDULE = (
     'schedule = "theta_rad"\ntheta_min_rad = -0.8\ntheta_max_rad = 0.8\noperating_points = 9\ncoefficient_degree = 2\n'
+)
+LEVELS = (
+    SCHEDULE.replace("theta_rad", "h_m")
+    .replace("theta_min_rad = -0.8", "h_min_m = 0.05")
+    .replace("theta_max_rad = 0.8", "h_max_m = 0.4")
 )
 # A cart beside the arm, pushed by a force of its own: what each line of the files becomes.
 CART_EQUATIONS = {
@@ -123,6 +129,17 @@ def test_the_heater_warms_as_its_equation_says(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.x[:, 0], 30.0 / G * (1.0 - np.exp(-G * t_s / C)), rtol=0, atol=1e-6)
 
 
+def test_the_tank_runs_out_as_its_equation_says(tmp_path: Path) -> None:
+    # sqrt(h) falls evenly, by a/A sqrt(g/2) a second, until the tank is empty, and stays there.
+    tank = bind(load_plant(begun("tank", tmp_path)))
+    A, a, g = (tank.parameter(name) for name in ("A", "a", "g"))
+    t_s = np.arange(801) * 0.1
+    run = simulate(tank, t_s, x0=[0.3], drive=np.zeros((801, 1)))
+    assert run.x is not None
+    root = np.maximum(np.sqrt(0.3) - a / A * np.sqrt(g / 2.0) * t_s, 0.0)
+    np.testing.assert_allclose(run.x[:, 0], root**2, rtol=0, atol=1e-6)
+
+
 def test_it_begins_as_an_arm_unless_told_otherwise(tmp_path: Path) -> None:
     assert set(LOOPS) == set(BEGINNINGS)
     begun("arm", tmp_path / "told")
@@ -155,10 +172,17 @@ def test_its_equations_keep_the_project_s_style(like: str, tmp_path: Path) -> No
         assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_a_schedule_is_left_out_as_the_arm_s_file_says(tmp_path: Path) -> None:
-    plant = begun("arm", tmp_path)
-    change(plant, SCHEDULE, "")
-    change(plant, "[design.arm]\n", "[design.arm]\nreference_min_rad = -0.5\nreference_max_rad = 0.5\n")
+@pytest.mark.parametrize(
+    ("like", "schedule", "references"),
+    [
+        ("arm", SCHEDULE, "reference_min_rad = -0.5\nreference_max_rad = 0.5\n"),
+        ("tank", LEVELS, "reference_min_m = 0.05\nreference_max_m = 0.4\n"),
+    ],
+)
+def test_a_schedule_is_left_out_as_the_file_says(like: str, schedule: str, references: str, tmp_path: Path) -> None:
+    plant = begun(like, tmp_path)
+    change(plant, schedule, "")
+    change(plant, f"[design.{like}]\n", f"[design.{like}]\n{references}")
     assert designed(plant).schedule is None
 
 

@@ -151,7 +151,7 @@ def maps(diagnosis: Diagnosis) -> Section | None:
         "When, in which region and at which frequencies",
         (
             "How the gap spreads; the taller a bar, the more of it lies there.",
-            "Of angles and commands only those ranges are drawn that hold clearly more than their part, of frequencies those at which "
+            "Of readings and commands only those ranges are drawn that hold clearly more than their part, of frequencies those at which "
             "what explains the gap goes with the model's error closely enough (its coherence) to say so.",
         ),
         plots=[bars(r) for r in rows],

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from diagnosis.explain.curve import Shape
 from diagnosis.explain.sentences import sentence, unseen_effects
 from records.diagnosis import Diagnosis
-from sim.places import Places
+from sim.model import Model
 from twinlaw.pages.block_diagram import block_diagram
 from twinlaw.pages.diagnose.answers import answers_section
 from twinlaw.pages.diagnose.causes import causes_section
@@ -26,7 +26,7 @@ UNSEEN, HIDDEN = "unseen", "hidden"  # kinds of notes
 def diagnosis_page(
     plant: str,
     diagnosis: Diagnosis,
-    places: Places,
+    model: Model,
     stories: Mapping[str, str],
     predicted: Sequence[Predicted],
     logs: Sequence[str],
@@ -40,7 +40,7 @@ def diagnosis_page(
     amiss = differs(diagnosis.firmware)
     quality = diagnosis_quality(diagnosis)
     sections: list[Section | None] = [firmware] if amiss else []
-    sections += [_place(diagnosis, places), causes_section(diagnosis, stories, moved, widths)]
+    sections += [_place(diagnosis, model), causes_section(diagnosis, stories, moved, widths)]
     if shape is not None:
         sections.append(shape_section(shape, words(diagnosis.unknown.place or "rig"), diagnosis.unknown.form))
     sections.append(_next(diagnosis))
@@ -69,7 +69,7 @@ def diagnosis_page(
     )
 
 
-def _place(diagnosis: Diagnosis, places: Places) -> Section:
+def _place(diagnosis: Diagnosis, model: Model) -> Section:
     gap = diagnosis.verdict == "gap"
     shares = {entry.place: entry.share for entry in diagnosis.places} if gap else {}
     p = diagnosis.false_alarm_probability
@@ -78,7 +78,7 @@ def _place(diagnosis: Diagnosis, places: Places) -> Section:
     lit = "The rig as blocks, from the commands on the left to the sensors on the right"
     lit += "; the warmer a block, the more of the gap lies there." if shares else "."
     return Section(
-        "Where it lies" if gap else "The rig", tuple(filter(None, (lit, alarm))), plots=(block_diagram(places, shares),)
+        "Where it lies" if gap else "The rig", tuple(filter(None, (lit, alarm))), plots=(block_diagram(model, shares),)
     )
 
 

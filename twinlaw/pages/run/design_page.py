@@ -201,7 +201,8 @@ def _migration(report: DesignReport) -> Section:
         "Why the delta form: where the slowest pole goes when the table is stored",
         (
             "The same controllers in powers of delta = 1 - z^-1 (what is generated) and in powers of z^-1 (the paper's eq (22)), exact "
-            "at every angle or fitted, stored in double, in float32, or printed with few digits. The worst of all angles.",
+            f"{'at every point or fitted' if report.is_scheduled else 'or as kept'}, stored in double, in float32, or printed with few "
+            f"digits.{' The worst of all points.' if report.is_scheduled else ''}",
         ),
         (Table(rows, ("axis", "form", "source", "stored as", "slowest pole", "stable")),),
     )

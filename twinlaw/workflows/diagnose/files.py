@@ -67,11 +67,10 @@ def _page(result: Result, logs: Sequence[str]) -> Page:
         for flight in _by_log(result.predicted)
     ]
     stories = {name: effect.story for name, effect in library(bound).items()}
-    places = bound.model.places
     return report.diagnosis_page(
         bound.plant.name,
         result.diagnosis,
-        places,
+        bound.model,
         stories,
         curves,
         logs,
