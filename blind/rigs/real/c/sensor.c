@@ -19,7 +19,7 @@ static void shaft(const model_t *m, const state_t *s, int axis, double *angle, d
 
 void sensor_rest(const model_t *m, state_t *s)
 {
-    for (int axis = 0; axis < m->rig.axes; axis++) {
+    for (int axis = 0; axis < m->rig.outputs; axis++) {
         double angle, rate;
         s->lost_angle[axis] = 0.0;
         shaft(m, s, axis, &angle, &rate);
@@ -44,7 +44,7 @@ void sensor_step(const model_t *m, state_t *s, double dt)
 {
     const effects_t *fx = &m->effects;
     s->now = (s->now + 1) % PAST;
-    for (int axis = 0; axis < m->rig.axes; axis++) {
+    for (int axis = 0; axis < m->rig.outputs; axis++) {
         double angle, rate, before = s->seen[axis];
         s->lost_angle[axis] += fx->missed[axis] * fabs(s->volts[axis]) * s->x[2 * axis + 1] * dt;
         shaft(m, s, axis, &angle, &rate);

@@ -9,7 +9,8 @@ typedef struct {
 
 typedef struct {
     double t_s;
-    double x[6];               /* angle, rate of axis 0, of axis 1; speeds of rotors 0 and 1 */
+    double x[6];               /* angle, rate of axis 0, of axis 1; speeds of rotors 0 and 1, or what else lags: two filters, a current.
+                                * Where a gyro measures axis 0 its rate stands in the place of the second angle, as it is read there. */
     double bristle[2];
     line_t line[2];
     double slewed_V[2], lagged_V[2], played_V[2], load, volts[2];      /* load: of the supply, in 10 V */
