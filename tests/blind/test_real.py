@@ -291,13 +291,14 @@ def test_a_plant_file_that_is_given_decides_on_the_plant(tmp_path: Path) -> None
     assert f'plant = "{PLANTS[-1].name}"' in (tmp_path / "x/case-0001/hold-1.toml").read_text()
 
 
-# What these leave depends on which frames are lost, on counting, on motors that are warm after longer; a limit that nothing reaches.
-NOT_FLOWN = ("theta_sensor.quantization", "rotor.warmup")
+# Counting is no part of exact readings; a motor is warm after longer; where friction falls faster than damping rises a pitch that is hardly
+# held makes much of how its bearing gave at the start.
+NOT_FLOWN = ("theta_sensor.quantization", "rotor.warmup", "pitch.stribeck")
 
 
 @pytest.mark.parametrize("plant", [ANTX_2DOF_DRONE, DC_MOTOR], ids=["drone", "motor"])
 def test_the_librarys_formula_with_a_truths_parameters_flies_what_the_rig_flew(plant: RealPlant) -> None:
-    """Free for 4 s from the same start, at most a third of what the effect changes is left: formulas, stages and steps are other ones."""
+    """Free for 4 s from the same start, at most a fifth of what the effect changes is left: formulas, stages and steps are other ones."""
     bound, lab = bind(load_plant(plant.path)), lab_of(plant, 4.0, DAHL, closed=False)
     order = [ORDER[plant.name].index(str(state)) for state in bound.model.states]
     start = flown(lab, {}).apparent[0][order]
@@ -316,5 +317,4 @@ def test_the_librarys_formula_with_a_truths_parameters_flies_what_the_rig_flew(p
             )
             run = simulate(model, record.t_s, x0, record.u_V, resolution=[0.0] * len(plant.outputs), substeps=4)
             left.append(np.std(run.y[:, 0] - record.exact_rad[:, 0]))
-        print(effect.name, left, left[1] / left[0])
-        #        assert left[1] < left[0] / 3.0, effect.name
+        assert left[1] < left[0] / 5.0, effect.name

@@ -12,10 +12,11 @@ import pytest
 from blind import markdown, score, to_json
 from blind.cases.sealed import Hold, TrueEffect, Truth, seal
 from blind.effects.equivalent import Equivalent
-from blind.rigs.bench import FILTERED
+from blind.rigs.bench import FILTERED, with_word
 from blind.scoring.judge import Judgement, judge
 from blind.scoring.results import Unreadable, read_answer
 from blind.scoring.statistics import calibration_error, clopper_pearson, reliability
+from sim.columns import reference_name
 
 BARS = {"psi_rad": 1e-3, "phi_rad": 1e-3}
 HOLD = Hold(BARS, BARS, {"psi_rad": 0.1, "phi_rad": 0.1}, {"psi_rad": 0.01, "phi_rad": 0.01})
@@ -213,6 +214,12 @@ def test_predictions_are_scored_against_the_cases_own_log_not_believed(tmp_path:
     judged = {j.case: j for j in score(tmp_path / "cases", tmp_path / "results").judgements}
     assert judged[name].shrinkage == pytest.approx(3.0 / 3.99)
     assert judged["case-0006"].shrinkage == 1.0
+
+
+def test_a_word_stands_before_a_columns_whole_unit() -> None:
+    for output in ("psi_rad", "q_rad_s", "q_m", "v_m_s"):
+        assert with_word(output, "ref") == reference_name(output)
+    assert with_word("q_rad_s", "before") == "q_before_rad_s"
 
 
 def test_the_exact_interval_is_that_of_clopper_and_pearson() -> None:
