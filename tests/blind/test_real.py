@@ -120,6 +120,17 @@ def test_an_axis_that_is_held_stands_while_its_readings_tip_to_and_fro() -> None
     assert np.ptp(record.exact_rad[:, 0]) > 0.02
 
 
+@OF_A_PLANT
+def test_a_filter_behind_a_late_sensor_leaves_the_rate_that_it_shows(plant: RealPlant) -> None:
+    """A filter of 2 ms makes an angle late by no more than that times its rate; the rate beside it is the shown angle's still."""
+    lab = lab_of(plant, 4.0, DAHL, closed=False)
+    late = {("sensor_delay_s", 0): 0.02}
+    bare = flown(lab, late)
+    behind = flown(replace(lab, body=replace(lab.body, filter_s=(2e-3, 2e-3 if len(plant.axes) > 1 else 0.0))), late)
+    np.testing.assert_array_equal(behind.apparent[:, 1], bare.apparent[:, 1])
+    assert np.abs(behind.apparent[:, 0] - bare.apparent[:, 0]).max() < 2.1e-3 * np.abs(bare.apparent[:, 1]).max()
+
+
 def begun_early(effect: Effect) -> Shape:
     """A shape of the effect, with an event half a second after the beginning."""
     return {key: 0.5 if key in EVENTS else value for key, value in effect.draw(np.random.default_rng(1)).items()}

@@ -217,7 +217,8 @@ def _draw_body(plant: RealPlant, rng: Generator) -> Body:
         usual = plant.rate[i] if law == ARC_TANGENT else plant.reach[i]
         widths[i] = usual * float(10.0 ** rng.uniform(*np.log10(WIDTHS[law])))
     if rng.random() < 0.3:
-        filters = [float(1.0 / (2.0 * np.pi * 10.0 ** rng.uniform(*np.log10(CORNERS_HZ))))] * 2
+        time_s = float(1.0 / (2.0 * np.pi * 10.0 ** rng.uniform(*np.log10(CORNERS_HZ))))
+        filters = [time_s if i < len(plant.axes) else 0.0 for i in range(2)]  # what a gyro measures is no angle
     return Body(law, (widths[0], widths[1]), (filters[0], filters[1]))
 
 
