@@ -155,18 +155,19 @@ def _axes(p: RealPlant, i: int) -> tuple[Effect, ...]:
 
 
 def _sensors(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    """An offset is left out where nothing depends on where the angle's zero is."""
+    """An offset is left out where nothing depends on where the angle's zero is, a scale where the plant's own numbers scale the angle."""
     at, output, reach = p.sensors[i], p.angles[i], p.fine(i)
     offset = known(
         f"{at}.offset", f"offset of {output}", Size("offset", 0.06 * reach), formulas.sensor_offset, i,
         signed=True, sensor=True, bounds=(0.02, 8.0),
     )  # fmt: skip
+    scale = known(
+        f"{at}.scale", f"scale of {output}", Size("scale_error", 0.04), formulas.sensor_scale, i, signed=True, sensor=True,
+        bounds=(0.02, 6.0),
+    )  # fmt: skip
     return (
         *((offset,) if p.gravity == p.axes[i] else ()),
-        known(
-            f"{at}.scale", f"scale of {output}", Size("scale_error", 0.04), formulas.sensor_scale, i, signed=True, sensor=True,
-            bounds=(0.02, 6.0), twins=p.before("gain"),
-        ),
+        *((scale,) if not p.linear else ()),
         known(
             f"{at}.quantization", f"quantization of {output}", Size("count", 0.02 * reach), formulas.same("q"), i, sensor=True,
             bounds=(0.01, 8.0),
