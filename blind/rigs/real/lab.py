@@ -116,7 +116,7 @@ class RealLab:
 
     def predict(self, rig: Rig, record: Record, step_s: float) -> Array:
         """Free runs of an effect-free rig on this rig's bearings."""
-        return predict(self.plant, self.body, rig, record, step_s)
+        return predict(self.plant, self.body, rig, record, min(step_s, self.plant.longest_step_s))
 
     def _push(self, rng: Generator, rows: int, period_s: float) -> Array:
         out, p, errors = np.zeros((rows, 2)), self.plant, self.errors

@@ -42,8 +42,9 @@ class RealPlant:
     `blades`: it comes from blades that may stall.
     `uneven`: friction may be so by direction; without any stated the library's formula would be a constant force.
     `linear`: without friction, one input moves what one sensor shows: what the one does and the other cannot be told apart.
-    `lost`: the angle at which nobody believes a run. `equations`: the file of its own equations, beside a plant file in a folder of its
-    own. `colours`: of its disturbances, and by output of its reading errors; those of other rigs where it has none.
+    `lost`: the angle at which nobody believes a run. `longest_step_s`: what its quickest part lets a prediction take.
+    `equations`: the file of its own equations, beside a plant file in a folder of its own. `colours`: of its disturbances, and by output of
+    its reading errors; those of other rigs where it has none.
     """
 
     name: str
@@ -72,6 +73,7 @@ class RealPlant:
     uneven: bool = True
     linear: bool = False
     lost: float = 100.0
+    longest_step_s: float = 1.0
     equations: str = ""
     colours: Colours = Colours()
 

@@ -119,6 +119,7 @@ DC_MOTOR = RealPlant(
     uneven=False,
     linear=True,
     lost=800.0,
+    longest_step_s=2.5e-4,  # the current settles within L/R, 1 ms
     equations="dc_motor.py",
 )
 PLANTS = (CE150, AEROSHIELD, EMPS, QUANSER_AERO, ANTX_2DOF_DRONE, DC_MOTOR)
