@@ -275,6 +275,15 @@ def test_a_filter_alone_is_no_false_alarm_but_another_name_is(tmp_path: Path) ->
     assert judged(truth("nominal"), late, tmp_path).detected
 
 
+def test_a_look_alike_of_a_late_reading_is_no_false_alarm_behind_a_filter(tmp_path: Path) -> None:
+    # Truth: in a linear loop a late reading and a late input are one; the answer says so.
+    said = answer("gap", "main_input", [("main_input.delay", 0.9)], [])
+    told = {**said, "effects": [{**entry, "ambiguous_with": ["psi_sensor.delay"]} for entry in said["effects"]]}
+    assert not judged(filtered(truth("nominal")), told, tmp_path).detected
+    assert judged(filtered(truth("nominal")), said, tmp_path).detected
+    assert judged(truth("nominal"), told, tmp_path).detected
+
+
 def test_a_delay_that_is_the_cause_counts_behind_a_filter_too(tmp_path: Path) -> None:
     said = answer("gap", "phi_sensor", [("phi_sensor.delay", 0.9)], ["phi_sensor.delay"])
     found = judged(filtered(truth("single", effect("phi_sensor.delay"))), said, tmp_path)
