@@ -8,7 +8,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from blind.cases.case import Case
-from blind.rigs.bench import Logging
+from blind.rigs.bench import Logging, with_word
 from blind.simulation.ce150 import restated
 from blind.simulation.record import Record
 
@@ -87,7 +87,8 @@ def _csv(record: Record, case: Case, defects: Defects, rng: Generator) -> str:
     if case.truth.rotor_speeds and names.speeds:
         columns |= dict(zip(names.speeds, _logged_speeds(record.apparent[:, 4:], logging, rng).T, strict=True))
     if record.loop == "closed":
-        columns |= dict(zip(map(_reference_of, names.outputs), np.round(record.reference, 7).T, strict=True))
+        asked = [with_word(output, "ref") for output in names.outputs]
+        columns |= dict(zip(asked, np.round(record.reference, 7).T, strict=False))
     kept = np.ones(n, bool) if record.kept is None else record.kept.copy()
     if defects.missing_rows:
         kept[rng.integers(1, n, 10)] = False
@@ -96,12 +97,6 @@ def _csv(record: Record, case: Case, defects: Defects, rng: Generator) -> str:
         cells.insert(0, map(str, np.flatnonzero(kept).tolist()))
     header = ",".join([*(["seq"] if defects.sequence else []), *columns])
     return "\n".join([header, *map(",".join, zip(*cells, strict=True))]) + "\n"
-
-
-def _reference_of(output: str) -> str:
-    """psi_rad: psi_ref_rad."""
-    name, _, unit = output.rpartition("_")
-    return f"{name}_ref_{unit}"
 
 
 def _logged_speeds(omega: Array, logging: Logging, rng: Generator) -> Array:

@@ -98,8 +98,9 @@ def make_case(order: Order) -> Made:
     rng = np.random.default_rng([*seed, 2])
     defects = draw_defects(rng)
     files = case_files(order.name, case, order.plant, defects, rng)
+    beside = {path.name: path.read_text(encoding="utf-8") for path in kind.beside}
     truth = replace(case.truth, defects=(*case.truth.defects, *defects.names))
-    return {"files": dict(files), "truth": truth_to_json(truth)}
+    return {"files": {**files, **beside}, "truth": truth_to_json(truth)}
 
 
 def _plant_of(order: Order) -> int:

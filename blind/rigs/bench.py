@@ -97,17 +97,26 @@ class Bench:
         return next((math.prod(self.true.value(name) for name in names) for names in stated), 0.0)
 
 
+def with_word(column: str, word: str) -> str:
+    """A column's name with a word before its unit: psi_rad, ref: psi_ref_rad; q_rad_s: q_ref_rad_s."""
+    whole = column.removesuffix("_s") if column.endswith(("_rad_s", "_m_s")) else column
+    name, _, unit = whole.rpartition("_")
+    return f"{name}_{word}_{unit}{column.removeprefix(whole)}"
+
+
 CE150_FILE = Path(__file__).resolve().parents[2] / "plants" / "ce150.toml"
 
 
 @dataclass(frozen=True)
 class RigKind:
-    """What cases of one kind on one plant are made of; `plant`: its plant file as it is given, read by `read` (text, where)."""
+    """What cases of one kind on one plant are made of; `plant`: its plant file as it is given, read by `read` (text, where); `beside`:
+    files that a case's plant file needs beside it."""
 
     catalogue: Catalogue
     draw_bench: Callable[[Rig, Plan, Generator], Bench]
     plant: Path = CE150_FILE
     read: Callable[[str, str], Rig] = read_rig
+    beside: tuple[Path, ...] = ()
 
 
 def denied_parameters(plan: Plan, rng: Generator) -> list[str]:

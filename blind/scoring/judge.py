@@ -67,13 +67,12 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
 
 
 def _without_filter(answer: Answer, truth: Truth) -> Answer:
-    """The answer without what says that angles come late, where a filter that is none of the effects makes them so: that is true as well.
-    Where nothing else is named, there is nothing else to be told."""
+    """The answer without what says that angles come late, or may as well, where a filter that is none of the effects makes them so: that is
+    true too. Where nothing else is named, there is nothing else to be told."""
     if not any(defect.startswith(FILTERED) for defect in truth.defects):
         return answer
-    beside = frozenset(
-        name for name in _said(answer) if _is_late(name) and not any(_fits(name, e) for e in truth.effects)
-    )
+    late = frozenset(name for name in _said(answer) if _is_late(name)) | _perhaps_late(answer)
+    beside = frozenset(name for name in late if not any(_fits(name, e) for e in truth.effects))
     ranked: dict[Names, RankedAnswer] = {}
     for entry in answer.ranked:
         names = entry.names - beside
@@ -92,6 +91,17 @@ def _without_filter(answer: Answer, truth: Truth) -> Answer:
 
 def _said(answer: Answer) -> Names:
     return frozenset().union(answer.found, *(entry.names for entry in answer.ranked))
+
+
+def _perhaps_late(answer: Answer) -> Names:
+    """What the answer itself cannot tell from a late reading."""
+    alike = [
+        (entry.names, other)
+        for entry in answer.ranked
+        for other in entry.ambiguous_with
+        if len(entry.names) == len(other) == 1
+    ]
+    return frozenset().union(*(names for names, other in alike if all(map(_is_late, other))))
 
 
 def _is_late(name: str) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blind.cases.sealed import Hold
+from blind.rigs.bench import with_word
 from blind.scoring.results import Answer
 
 Array = NDArray[np.float64]
@@ -44,7 +45,7 @@ def _scored_rms(
     log: Path, prediction: Path, outputs: Sequence[str]
 ) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
     measured, predicted = _columns(log), _columns(prediction)
-    names = [_predicted(output, bar) for output in outputs for bar in ("before", "after")]
+    names = [with_word(output, bar) for output in outputs for bar in ("before", "after")]
     if predicted is None or measured is None or any(name not in predicted for name in ("t_s", *names)):
         return None
     rows = np.searchsorted(measured["t_s"], predicted["t_s"] - 1e-4)
@@ -53,18 +54,12 @@ def _scored_rms(
     bars: tuple[dict[str, float], dict[str, float]] = ({}, {})
     for output in outputs:
         for bar, kind in zip(bars, ("before", "after"), strict=True):
-            error = (predicted[_predicted(output, kind)] - measured[output][rows])[same]
+            error = (predicted[with_word(output, kind)] - measured[output][rows])[same]
             error = error[np.isfinite(error)]
             if len(error) < COVERED * len(measured["t_s"]):
                 return None
             bar[output] = float(np.sqrt(np.mean(error**2)))
     return bars
-
-
-def _predicted(output: str, bar: str) -> str:
-    """The column of a prediction, psi_rad: psi_before_rad."""
-    name, _, unit = output.rpartition("_")
-    return f"{name}_{bar}_{unit}"
 
 
 def _columns(path: Path) -> dict[str, Array] | None:

@@ -44,11 +44,13 @@ DRY_FRICTION = ("b_cE", "b_cA")
 
 @dataclass(frozen=True)
 class Rig:
-    """Parameters of a plant file by name (arrays; one element for a number), in SI units, with the encoders' steps in rad."""
+    """Parameters of a plant file by name (arrays; one element for a number), in SI units, with the encoders' steps in rad; by output
+    also the white noise before them, 0 or () where none is stated."""
 
     values: Mapping[str, Array]
     sds: Mapping[str, Array]
     resolution_rad: tuple[float, ...]
+    noise: tuple[float, ...] = ()
 
     def value(self, name: str) -> float:
         """A parameter that is one number."""

@@ -12,10 +12,11 @@ import pytest
 from blind import markdown, score, to_json
 from blind.cases.sealed import Hold, TrueEffect, Truth, seal
 from blind.effects.equivalent import Equivalent
-from blind.rigs.bench import FILTERED
+from blind.rigs.bench import FILTERED, with_word
 from blind.scoring.judge import Judgement, judge
 from blind.scoring.results import Unreadable, read_answer
 from blind.scoring.statistics import calibration_error, clopper_pearson, reliability
+from sim.columns import reference_name
 
 BARS = {"psi_rad": 1e-3, "phi_rad": 1e-3}
 HOLD = Hold(BARS, BARS, {"psi_rad": 0.1, "phi_rad": 0.1}, {"psi_rad": 0.01, "phi_rad": 0.01})
@@ -215,6 +216,12 @@ def test_predictions_are_scored_against_the_cases_own_log_not_believed(tmp_path:
     assert judged["case-0006"].shrinkage == 1.0
 
 
+def test_a_word_stands_before_a_columns_whole_unit() -> None:
+    for output in ("psi_rad", "q_rad_s", "q_m", "v_m_s"):
+        assert with_word(output, "ref") == reference_name(output)
+    assert with_word("q_rad_s", "before") == "q_before_rad_s"
+
+
 def test_the_exact_interval_is_that_of_clopper_and_pearson() -> None:
     """Truth: none of 30 gives an upper limit of 1 - 0.025^(1/30) = 11.57 %; 5 of 10 the textbook's 18.71 % to 81.29 %."""
     assert clopper_pearson(0, 30) == (0.0, pytest.approx(1.0 - 0.025 ** (1.0 / 30.0)))
@@ -266,6 +273,15 @@ def test_a_filter_alone_is_no_false_alarm_but_another_name_is(tmp_path: Path) ->
     assert not judged(filtered(truth("nominal")), late, tmp_path).detected
     assert judged(filtered(truth("nominal")), other, tmp_path).detected
     assert judged(truth("nominal"), late, tmp_path).detected
+
+
+def test_a_look_alike_of_a_late_reading_is_no_false_alarm_behind_a_filter(tmp_path: Path) -> None:
+    # Truth: in a linear loop a late reading and a late input are one; the answer says so.
+    said = answer("gap", "main_input", [("main_input.delay", 0.9)], [])
+    told = {**said, "effects": [{**entry, "ambiguous_with": ["psi_sensor.delay"]} for entry in said["effects"]]}
+    assert not judged(filtered(truth("nominal")), told, tmp_path).detected
+    assert judged(filtered(truth("nominal")), said, tmp_path).detected
+    assert judged(truth("nominal"), told, tmp_path).detected
 
 
 def test_a_delay_that_is_the_cause_counts_behind_a_filter_too(tmp_path: Path) -> None:

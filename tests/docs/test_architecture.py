@@ -11,7 +11,7 @@ from tests.test_project import ROOT
 
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 LINTER = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
-WITHOUT_PYTHON = ["plants", "firmware"]
+NO_PACKAGES = ["plants", "firmware"]
 
 
 def table(heading: str) -> list[list[str]]:
@@ -27,8 +27,8 @@ def test_the_folders_stand_in_the_order_of_their_imports() -> None:
     folders = [folder.strip("`/") for folder, _ in table("Folders")]
     layers = next(entry["layers"] for entry in LINTER["contracts"] if "twinlaw" in entry.get("layers", []))
     layers.remove("blind")  # which stands apart
-    assert [name for name in folders if name not in WITHOUT_PYTHON] == layers[::-1]
-    assert set(folders) - set(layers) == set(WITHOUT_PYTHON)
+    assert [name for name in folders if name not in NO_PACKAGES] == layers[::-1]
+    assert set(folders) - set(layers) == set(NO_PACKAGES)
 
 
 def test_every_folder_and_file_of_the_page_is_there() -> None:
@@ -108,7 +108,7 @@ def test_no_other_file_names_what_is_changed(what: str) -> None:
     example = EXAMPLES[what]
     searched = example.searched or (
         *(name for name in LINTER["root_packages"] if name != "blind"),
-        *WITHOUT_PYTHON,
+        *NO_PACKAGES,
         "README.md",
         "Makefile",
     )

@@ -44,6 +44,12 @@ def blocks() -> list[Block]:
     return [Block(language, file or None, text) for language, file, text in BLOCK.findall(PAGE.read_text("utf-8"))]
 
 
+def test_the_pages_motor_is_the_projects() -> None:
+    for block in blocks():
+        if block.file:
+            assert (ROOT / "plants" / "dc_motor" / Path(block.file).name).read_text("utf-8") == block.text
+
+
 def test_the_page_is_made_of_files_programs_and_their_output() -> None:
     found = blocks()
     assert PAGE.read_text("utf-8").count("```") == 2 * len(found)

@@ -10,4 +10,7 @@ from blind.rigs.real.catalogue import CATALOGUES
 from blind.rigs.real.lab import draw_bench
 from blind.rigs.real.plants import PLANTS
 
-KINDS = tuple(RigKind(CATALOGUES[plant.name], partial(draw_bench, plant), plant.path, plant.read) for plant in PLANTS)
+KINDS = tuple(
+    RigKind(CATALOGUES[plant.name], partial(draw_bench, plant), plant.path, plant.read, plant.beside)
+    for plant in PLANTS
+)

@@ -9,52 +9,25 @@ from functools import partial
 from blind.effects import ce150_formulas as formulas
 from blind.effects import row
 from blind.effects.ce150_formulas import Formula
-from blind.effects.draws import Fixed, OneOf, Source, Uniform
+from blind.effects.draws import Fixed, OneOf, Uniform
 from blind.effects.effect import Catalogue, Effect, Size, over
 from blind.effects.equivalent import relative
 from blind.effects.visited import Visited
+from blind.rigs.real import beyond
 from blind.rigs.real import formulas as own
-from blind.rigs.real.plants import CE150, PLANTS, RealPlant
+from blind.rigs.real.plant import RealPlant
+from blind.rigs.real.plants import CE150, PLANTS
 
-BOUNDS = (0.003, 30.0)
-
-
-known = partial(row.known, bounds=BOUNDS)
-
-
-def outside(
-    name: str,
-    depends: str,
-    size: Size,
-    i: int,
-    keywords: str,
-    drawn: Mapping[str, Source] | None = None,
-    signed: bool = False,
-    sensor: bool = False,
-    twins: str = "",
-    more: str = "",
-) -> Effect:
-    """An effect that the contract's table does not hold; `more`: further places that are right."""
-    places = f"{name.partition('.')[0]} {more}"
-    return row.outside(
-        name,
-        places,
-        depends,
-        size,
-        i,
-        bounds=BOUNDS,
-        drawn=drawn,
-        signed=signed,
-        keywords=keywords,
-        twins=twins,
-        sensor=sensor,
-    )
+known = partial(row.known, bounds=beyond.BOUNDS)
 
 
 def _inputs(p: RealPlant, i: int) -> tuple[Effect, ...]:
     """Between the command and the voltage of a motor."""
     at, u, size = p.drives[i], p.inputs[i], p.input_V[i]
-    lag = f"{p.rotors[i]}.lag" if p.name != "ce150" else ""
+    lag = f"{p.rotors[i]}.lag" if p.rotors and not p.speeds else ""
+    sag = known(
+        f"{at}.supply_sag", f"gain({u}) of {u}", Size("sag", 0.03 * 10.0 / size), formulas.supply_sag, i, term=own.sagging
+    )  # fmt: skip
     return (
         known(
             f"{at}.deadzone", f"dead band of {u}", Size("dead_V", 0.025 * size), formulas.dead_zone, i,
@@ -62,15 +35,12 @@ def _inputs(p: RealPlant, i: int) -> tuple[Effect, ...]:
         ),
         known(
             f"{at}.saturation", f"limit of {u}", Size("limit_V", p.busy * size, over), formulas.saturation, i,
-            term=own.soft_limit(i), start=own.limit_start, drawn={"limit_power": Uniform(8.0, 20.0)}, bounds=(0.6, 8.0),
+            term=own.soft_limit(i), start=own.limit_start, drawn={"limit_power": Uniform(8.0, 20.0)}, bounds=(0.6, min(8.0, p.severest)),
         ),
-        known(
-            f"{at}.supply_sag", f"gain({u}) of {u}", Size("sag", 0.03 * 10.0 / size), formulas.supply_sag, i,
-            term=own.sagging,
-        ),
+        *((sag,) if u.endswith("_V") else ()),
         known(
             f"{at}.slew_limit", f"rate limit of {u}", Size("slew_V_s", 0.8 * size, over), formulas.same("r"), i,
-            bounds=(0.03, 30.0),
+            bounds=(0.03, p.severest),
         ),
         known(
             f"{at}.quantization", f"steps of {u}", Size("step_V", 0.02 * size), formulas.same("q"), i,
@@ -78,26 +48,37 @@ def _inputs(p: RealPlant, i: int) -> tuple[Effect, ...]:
         ),
         known(
             f"{at}.lag", f"lag of {u}", Size("lag_s", 0.02), formulas.same("tau"), i,
-            drawn={"lag_skew": Uniform(-0.2, 0.2)}, bounds=(0.05, 8.0), twins=lag,
+            drawn={"lag_skew": Uniform(-0.2, 0.2)}, bounds=(0.05, 8.0), twins=lag or p.behind("lag"),
         ),
-        known(f"{at}.delay", f"delay of {u}", Size("delay_s", 0.012), formulas.same("tau"), i, bounds=(0.1, 8.0)),
+        known(
+            f"{at}.delay", f"delay of {u}", Size("delay_s", 0.012), formulas.same("tau"), i, bounds=(0.1, 8.0), twins=p.behind("delay"),
+        ),
     )  # fmt: skip
 
 
 def _drives(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    """Motors with what they turn; where thrust is stated as proportional it may be another power."""
+    """Motors with what they turn; where thrust is stated as proportional it may be another power, and where it has a sign it may be weaker
+    one way."""
+    if not p.rotors:
+        return ()
     at, u, size = p.rotors[i], p.inputs[i], p.input_V[i]
     warm = known(
         f"{at}.warmup", f"gain(t) of {u}", Size("warm", 0.05), formulas.warm_up, i,
         term=own.warming, start=own.warm_start, drawn={"warm_s": Uniform(2.0, 8.0)}, bounds=(0.01, 12.0),
     )  # fmt: skip
-    if p.name == "ce150":
+    if p.speeds:
         dry = known(
             f"{at}.dry_friction", f"torque(sgn omega_{'MT'[i]}) on rotor", Size("dry", 30.0), formulas.dry_rotor, i,
             term=own.rounded_dry(i),
         )  # fmt: skip
         return warm, dry
-    if p.name == "quanser_aero":
+    if p.signed:
+        weak = known(
+            f"{at}.reverse_asymmetry", f"thrust(sgn {u})", Size("reverse", 0.1, most=0.9), own.reversed_command, i,
+            twins=f"{p.drives[i]}.driver_asymmetry", bounds=(0.02, 6.0),
+        )  # fmt: skip
+        return warm, weak
+    if not p.proportional:
         return (warm,)
     square = known(
         f"{at}.quadratic_thrust", f"thrust({u})", Size("power", 0.15), own.quadratic_thrust, i,
@@ -107,8 +88,12 @@ def _drives(p: RealPlant, i: int) -> tuple[Effect, ...]:
 
 
 def _axes(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    at, angle, torque = p.axes[i], p.outputs[i].rpartition("_")[0], p.torque[i]
+    at, angle, torque = p.axes[i], p.angles[i], p.torque[i]
     rate, reach = p.rate[i], p.reach[i]
+    uneven = known(
+        f"{at}.friction_asymmetry", f"torque(sgn {angle}_dot) on {at}", Size("asymmetry", 0.01 * torque),
+        formulas.same("difference", either_sign=True), i, signed=True,
+    )  # fmt: skip
     dry = (
         known(f"{at}.coulomb", f"torque(sgn {angle}_dot) on {at}", Size("", 0.0075 * torque), formulas.same("b"), i, hides=p.hides[i])
         if p.hides
@@ -134,36 +119,35 @@ def _axes(p: RealPlant, i: int) -> tuple[Effect, ...]:
             f"{at}.disturbance", f"torque(t) on {at}", Size("pulse", 0.1 * torque), formulas.disturbance, i, term=own.blunt_push,
             drawn={"pulse_start_s": Uniform(3.0, 9.0), "pulse_s": Uniform(0.4, 2.5)}, signed=True,
         ),
-        known(
-            f"{at}.friction_asymmetry", f"torque(sgn {angle}_dot) on {at}", Size("asymmetry", 0.01 * torque),
-            formulas.same("difference", either_sign=True), i, signed=True,
-        ),
+        *((uneven,) if p.uneven else ()),
     )  # fmt: skip
 
 
 def _sensors(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    """An offset is left out where nothing depends on where the angle's zero is."""
-    at, output, reach = p.sensors[i], p.outputs[i].rpartition("_")[0], p.reach[i]
+    """An offset is left out where nothing depends on where the angle's zero is, a scale where the plant's own numbers scale the angle."""
+    at, output, reach = p.sensors[i], p.angles[i], p.fine(i)
     offset = known(
         f"{at}.offset", f"offset of {output}", Size("offset", 0.06 * reach), formulas.sensor_offset, i,
         signed=True, sensor=True, bounds=(0.02, 8.0),
     )  # fmt: skip
+    scale = known(
+        f"{at}.scale", f"scale of {output}", Size("scale_error", 0.04), formulas.sensor_scale, i, signed=True, sensor=True,
+        bounds=(0.02, 6.0),
+    )  # fmt: skip
     return (
         *((offset,) if p.gravity == p.axes[i] else ()),
-        known(
-            f"{at}.scale", f"scale of {output}", Size("scale_error", 0.04), formulas.sensor_scale, i, signed=True, sensor=True,
-            bounds=(0.02, 6.0),
-        ),
+        *((scale,) if not p.linear else ()),
         known(
             f"{at}.quantization", f"quantization of {output}", Size("count", 0.02 * reach), formulas.same("q"), i, sensor=True,
             bounds=(0.01, 8.0),
         ),
         known(
             f"{at}.delay", f"delay of {output}", Size("sensor_delay_s", 0.012), formulas.same("tau"), i, sensor=True,
-            bounds=(0.1, 7.0),
+            bounds=(0.1, 7.0), twins=p.before("delay"),
         ),
         known(
-            f"{at}.lag", f"lag of {output}", Size("sensor_lag_s", 0.015), formulas.same("tau"), i, sensor=True, bounds=(0.05, 8.0)
+            f"{at}.lag", f"lag of {output}", Size("sensor_lag_s", 0.015), formulas.same("tau"), i, sensor=True, bounds=(0.05, 8.0),
+            twins=p.before("lag"),
         ),
         known(
             f"{at}.backlash", f"backlash of {output}", Size("backlash", 0.02 * reach), formulas.same("width"), i, sensor=True,
@@ -180,7 +164,7 @@ def _shift(moment: Callable[[Visited], float]) -> Formula:
 def _weights(p: RealPlant) -> tuple[Effect, ...]:
     """Of the axis that gravity turns."""
     at = p.gravity
-    angle = p.outputs[p.axes.index(at)].rpartition("_")[0]
+    angle = p.angles[p.axes.index(at)]
     return (
         known(
             f"{at}.centre_of_gravity", f"torque({angle}) on {at}", Size("centre_rad", 0.06), formulas.same("delta"), signed=True
@@ -221,77 +205,11 @@ def _loop(p: RealPlant) -> tuple[Effect, ...]:
     return (
         known(
             "loop.delay", f"delay of {inputs}", Size("delay_s", 0.012), formulas.same("tau"), *every, bounds=(0.1, 8.0),
-            twins=f"{one}.delay" if len(every) == 1 else "",
+            twins=f"{one}.delay {p.behind('delay')}" if len(every) == 1 else "",
         ),
         known(
             "loop.dropped_frames", f"lost updates of {inputs}", Size("", 0.1, most=0.6), formulas.same("p"),
             drawn={"burst_frames": OneOf(Fixed(1.0), Uniform(2.0, 6.0))}, bounds=(0.05, 6.0), loses_frames=True,
-        ),
-    )  # fmt: skip
-
-
-def _unknown_axis(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    at, angle, torque = p.axes[i], p.outputs[i].rpartition("_")[0], p.torque[i]
-    reach = p.reach[i]
-    return (
-        outside(
-            f"{at}.cogging", f"torque({angle}) on {at}", Size("detent", 0.03 * torque), i, "detent cogging magnet cyclic periodic",
-            {"detent_waves": Uniform(5.0 / reach, 15.0 / reach), "detent_rad": Uniform(-3.14, 3.14)},
-        ),
-        outside(
-            f"{at}.hum", f"torque(t) on {at}", Size("hum", 0.03 * torque), i, "hum periodic vibration sine",
-            {"hum_rad_s": Uniform(2.0, 12.0)},
-        ),
-        outside(
-            f"{at}.bumper", f"torque({angle}) on {at}", Size("bumper", torque / reach), i, "stop bumper limit contact wall",
-            {"bumper_at": Uniform(0.25 * reach, 0.55 * reach)},
-        ),
-        outside(f"{at}.drift", f"torque(t) on {at}", Size("drift", 0.003 * torque), i, "drift creep ramp thermal leak", signed=True),
-        outside(
-            f"{at}.loaded_bearing", f"torque({p.inputs[i]}, sgn {angle}_dot) on {at}",
-            Size("load_friction", 0.02 * torque / p.input_V[i]), i, "load_friction load", twins=f"{at}.coulomb",
-        ),
-    )  # fmt: skip
-
-
-def _unknown_drive(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    at, rotor, u, size = p.drives[i], p.rotors[i], p.inputs[i], p.input_V[i]
-    stall = outside(
-        f"{rotor}.stall", f"thrust({u})", Size("stall", 0.3, most=0.9), i, "stall flow thrust", {"stall_from": Uniform(0.2, 0.5)},
-        more=at, twins=f"{at}.saturation",
-    )  # fmt: skip
-    return (
-        outside(f"{at}.play", f"hysteresis of {u}", Size("play_V", 0.02 * size), i, "backlash play hysteresis memory"),
-        outside(
-            f"{at}.loose_contact", f"gain(t) of {u}", Size("dip", 0.15, most=1.0), i, "contact dropout intermittent dip loose",
-            {"dip_every_s": Uniform(0.7, 3.0), "dip_long_s": Uniform(0.06, 0.3), "dip_phase": Uniform(0.0, 1.0)}, more=rotor,
-        ),
-        outside(
-            f"{rotor}.chipped_blade", f"gain(t) of {u}", Size("chip", 0.06, most=0.6), i, "chip damage gain_step break",
-            {"chip_time_s": Uniform(3.0, 9.0)}, more=at,
-        ),
-        *((stall,) if p.name != "emps" else ()),
-    )  # fmt: skip
-
-
-def _unknown_sensor(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    at, angle, reach = p.sensors[i], p.outputs[i].rpartition("_")[0], p.reach[i]
-    return (
-        outside(
-            f"{at}.wander", f"output(t) of {angle}", Size("wander", 0.002 * reach), i, "wander drift thermal creep", signed=True,
-            sensor=True,
-        ),
-        outside(
-            f"{at}.eccentric_disc", f"output({angle}) of {angle}", Size("cyclic", 0.01 * reach), i, "cyclic eccentric periodic",
-            {"cyclic_waves": Uniform(3.0 / reach, 10.0 / reach)}, sensor=True,
-        ),
-        outside(
-            f"{at}.jump", f"output(t) of {angle}", Size("jump", 0.03 * reach), i, "count_slip jump slip",
-            {"jump_time_s": Uniform(3.0, 9.0)}, signed=True, sensor=True,
-        ),
-        outside(
-            f"{at}.missed_lines", f"output({angle}) of {angle}", Size("missed", 0.1 / p.input_V[i]), i,
-            "missed_counts miss lost line", sensor=True,
         ),
     )  # fmt: skip
 
@@ -302,9 +220,9 @@ def _catalogue(p: RealPlant) -> Catalogue:
     rows += [row for i in axes for row in (*_axes(p, i), *_sensors(p, i))]
     rows += _weights(p) if p.gravity else ()
     rows += CE150_ALONE if p is CE150 else ()
-    beyond = [row for i in axes for row in (*_unknown_axis(p, i), *_unknown_sensor(p, i))]
-    beyond += [row for i in inputs for row in _unknown_drive(p, i)]
-    return Catalogue(tuple(rows), _loop(p), tuple(beyond))
+    further = [row for i in axes for row in (*beyond.of_axis(p, i), *beyond.of_sensor(p, i))]
+    further += [row for i in inputs for row in beyond.of_drive(p, i)]
+    return Catalogue(tuple(rows), _loop(p), tuple(further))
 
 
 CATALOGUES: Mapping[str, Catalogue] = {plant.name: _catalogue(plant) for plant in PLANTS}

@@ -35,11 +35,12 @@ OUT = Path(__file__).resolve().parent / "spectra.toml"
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """An angle (n,) at a period in s, with the inputs (n, k) beside it."""
+    """An angle (n,) at a period in s, with the inputs (n, k) beside it; or a rate, which says nothing of what pushes."""
 
     angle: Array
     inputs: Array
     period_s: float
+    is_rate: bool = False
 
 
 def _text(path: Path, period_s: float) -> Measured:
@@ -72,12 +73,23 @@ def _pendulum(path: Path) -> Measured:
     return Measured(columns["theta_rad"], columns["tau_Nm"][:, None], float(np.median(np.diff(columns["t_s"]))))
 
 
+def _antx(path: Path, key: str) -> Measured:
+    """The drone's angle, or its rate, by sample, the stamps taken for even; beside it the input, on a line between commands."""
+    streams = loadmat(path, squeeze_me=True, struct_as_record=False)
+    read, sent = streams[key], streams["M"]
+    inputs = np.interp(read.timestamp, sent.timestamp, sent.value)[:, None]
+    return Measured(np.asarray(read.value, float), inputs, 0.004, is_rate=key == "q")
+
+
+ANTX = "antx_2dof_drone/Lab01_part2__log_1_2024-5-22-17-23-18_2dd.mat"
 SOURCES: Mapping[str, tuple[str, Callable[[Path], Measured]]] = {
     "aeroshield": ("aeroshield/ident_data.txt", lambda path: _text(path, 0.01)),
     "aeroshield_again": ("aeroshield/val_data.txt", lambda path: _text(path, 0.01)),
     "quanser_aero_pitch": ("quanser_aero/model_verification/measured_pitch.mat", _aero),
     "quanser_aero_yaw": ("quanser_aero/model_verification/measured_yaw.mat", _aero),
     "emps": ("emps/DATA_EMPS.mat", _emps),
+    "antx_pitch": (ANTX, lambda path: _antx(path, "theta")),
+    "antx_rate": (ANTX, lambda path: _antx(path, "q")),
     "pendulum": ("torque_limited_pendulum/es1kg_b.csv", _pendulum),
 }
 
@@ -131,7 +143,8 @@ def main(arguments: Sequence[str]) -> int:
         digest = hashlib.sha256((root / path).read_bytes()).hexdigest()
         pushed = max(PUSH_PERIOD_S, measured.period_s)
         parts.append(_entry(name, "reading", path, digest, measured.period_s, reading(measured)))
-        parts.append(_entry(name, "push", path, digest, pushed, push(measured)))
+        if not measured.is_rate:
+            parts.append(_entry(name, "push", path, digest, pushed, push(measured)))
     OUT.write_text("\n".join(parts), encoding="utf-8")
     return 0
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from blind.effects.ce150_formulas import FULL_RAD_S, LOWER_STOP_RAD, Sized, Term
 from blind.effects.effect import Shape
-from blind.effects.equivalent import PHASES, Equivalents, fitted, relative
+from blind.effects.equivalent import PHASES, Equivalent, Equivalents, fitted, relative
 from blind.effects.visited import Array, Visited
 
 
@@ -108,6 +108,11 @@ def tail_lift(a: float, shape: Shape, visited: Visited) -> Array:
 def moved_centre(a: float, shape: Shape, visited: Visited) -> Array:
     """What gravity's torque gains, in its moment."""
     return np.asarray(np.cos(visited.psi + a) - np.cos(visited.psi))
+
+
+def reversed_command(e: Sized) -> Equivalents:
+    """r u for u < 0."""
+    return {"r": Equivalent(1.0 - e.a, abs(e.a))}
 
 
 def quadratic_thrust(e: Sized) -> Equivalents:

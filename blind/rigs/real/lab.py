@@ -1,7 +1,7 @@
 """Where the real rigs fly, log by log otherwise: rates, loops, held axes, disturbances and errors of the colour that real rigs have,
 and what happens to people's logs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from blind.rigs.bench import FILTERED, Bench, Columns, Logging, Plan
 from blind.rigs.real import operators
 from blind.rigs.real.manoeuvre import CLOSED, OPEN, drawn
-from blind.rigs.real.plants import CE150, RealPlant, draw_stated, draw_true
+from blind.rigs.real.plant import RealPlant, draw_stated, draw_true
+from blind.rigs.real.plants import CE150
 from blind.rigs.real.simulation import ARC_TANGENT, DAHL, LUGRE, Body, RealInputs, fly, predict
-from blind.rigs.real.spectra import Spectrum, spectra
+from blind.rigs.real.spectra import Spectrum, called
 from blind.simulation.ce150 import DRY_FRICTION, Rig
 from blind.simulation.record import Loss, Model, Record
 
@@ -55,8 +56,8 @@ class LogStyle:
 
 @dataclass(frozen=True)
 class Errors:
-    """By axis: colours of disturbance and reading error, the disturbance's RMS as a share of a usual acceleration, those of both reading
-    errors in counts."""
+    """By axis the colour of a disturbance and its RMS as a share of a usual acceleration; by output the colour of a reading error and the
+    RMS of both reading errors in counts."""
 
     push: tuple[Spectrum, ...]
     push_share: tuple[float, ...]
@@ -115,7 +116,7 @@ class RealLab:
 
     def predict(self, rig: Rig, record: Record, step_s: float) -> Array:
         """Free runs of an effect-free rig on this rig's bearings."""
-        return predict(self.plant, self.body, rig, record, step_s)
+        return predict(self.plant, self.body, rig, record, min(step_s, self.plant.longest_step_s))
 
     def _push(self, rng: Generator, rows: int, period_s: float) -> Array:
         out, p, errors = np.zeros((rows, 2)), self.plant, self.errors
@@ -126,7 +127,7 @@ class RealLab:
 
     def _misread(self, rng: Generator, rows: int, period_s: float) -> Array:
         out, errors = np.zeros((rows, 2)), self.errors
-        for i in range(len(self.plant.axes)):
+        for i in range(len(self.plant.outputs)):
             counts = errors.white_counts[i] * rng.standard_normal(rows)
             counts += errors.coloured_counts[i] * errors.reading[i].drawn(rng, rows, period_s)
             out[:, i] = counts * self.nominal.resolution_rad[i]
@@ -140,7 +141,7 @@ def draw_bench(plant: RealPlant, given: Rig, plan: Plan, rng: Generator) -> Benc
     true = draw_true(known, rng)
     styles = _draw_styles(plant, rng)
     lively = float(rng.uniform(0.75, 1.0) if plan.excited else rng.uniform(0.4, 0.7))
-    lab = RealLab(plant, known, true, _draw_body(plant, rng), _draw_errors(plant, rng), styles, lively)
+    lab = RealLab(plant, known, true, _draw_body(plant, rng), _draw_errors(plant, given, rng), styles, lively)
     logging = Logging(
         period_s=styles[0].period_s,
         length_s=styles[0].length_s,
@@ -216,21 +217,24 @@ def _draw_body(plant: RealPlant, rng: Generator) -> Body:
         usual = plant.rate[i] if law == ARC_TANGENT else plant.reach[i]
         widths[i] = usual * float(10.0 ** rng.uniform(*np.log10(WIDTHS[law])))
     if rng.random() < 0.3:
-        filters = [float(1.0 / (2.0 * np.pi * 10.0 ** rng.uniform(*np.log10(CORNERS_HZ))))] * 2
+        time_s = float(1.0 / (2.0 * np.pi * 10.0 ** rng.uniform(*np.log10(CORNERS_HZ))))
+        filters = [time_s if i < len(plant.axes) else 0.0 for i in range(2)]  # what a gyro measures is no angle
     return Body(law, (widths[0], widths[1]), (filters[0], filters[1]))
 
 
-def _draw_errors(plant: RealPlant, rng: Generator) -> Errors:
-    axes = range(len(plant.axes))
-    of: Mapping[str, tuple[Spectrum, ...]] = spectra()
-    push = tuple(of["push"][rng.integers(len(of["push"]))] for _ in axes)
+def _draw_errors(plant: RealPlant, given: Rig, rng: Generator) -> Errors:
+    """Where white noise is stated its size, doubled, stands for a count: a file states what is found on a usual day."""
+    unit = [max(1.0, 2.0 * noise / step) for noise, step in zip(given.noise, given.resolution_rad, strict=True)]
+    pushes, colours = called("push", plant.colours.push), plant.colours.reading or ((),) * len(plant.outputs)
+    readings = [called("reading", names) for names in colours]
+    push = tuple(pushes[rng.integers(len(pushes))] for _ in plant.axes)
     low, high = np.log10(PUSH_SCALE)
     return Errors(
         push=push,
         push_share=tuple(spectrum.share * float(10.0 ** rng.uniform(low, high)) for spectrum in push),
-        reading=tuple(of["reading"][rng.integers(len(of["reading"]))] for _ in axes),
-        white_counts=tuple(float(rng.uniform(*MISREAD_COUNTS)) for _ in axes),
-        coloured_counts=tuple(float(rng.uniform(*MISREAD_COUNTS)) for _ in axes),
+        reading=tuple(of[rng.integers(len(of))] for of in readings),
+        white_counts=tuple(one * float(rng.uniform(*MISREAD_COUNTS)) for one in unit),
+        coloured_counts=tuple(one * float(rng.uniform(*MISREAD_COUNTS)) for one in unit),
     )
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from blind.effects.effect import effects_struct
 from blind.rigs.real.catalogue import ALL
-from blind.rigs.real.plants import RealPlant
+from blind.rigs.real.plant import RealPlant
 from blind.simulation.ce150 import Rig
 from blind.simulation.native import COMMON_DIR, DECLARATIONS, FLAGS, OF_EVERY_RIG, pointer, set_fields
 from blind.simulation.record import Model, Record
@@ -104,15 +104,15 @@ def fly(plant: RealPlant, body: Body, model: Model, shadows: Sequence[Model], in
     window = round(1.0 / inputs.period_s)
     lib.fly(models, run, pointer(ffi, inputs.start), count, models + 1, mode, window, out)
     log = {name: array[inputs.settle :] for name, array in arrays.items()}
-    axes = len(plant.outputs)
+    outputs = len(plant.outputs)
     return Record(
         t_s=log["t_s"],
         u_V=log["u_V"][:, : len(plant.inputs)],
-        y_rad=log["y"][:, :axes],
-        exact_rad=log["exact"][:, :axes],
+        y_rad=log["y"][:, :outputs],
+        exact_rad=log["exact"][:, :outputs],
         apparent=log["apparent"],
-        shadow=log["shadow"][:, :, :axes],
-        reference=inputs.reference[inputs.settle :, :axes],
+        shadow=log["shadow"][:, :, :outputs],
+        reference=inputs.reference[inputs.settle :, : len(plant.axes)],
         stop_share=out.at_stop / rows,
         failed=bool(out.failed),
         period_s=inputs.period_s,

@@ -1,7 +1,7 @@
 """Errors of the colour that real rigs' errors have: the numbers of spectra.toml in, noise out."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -14,6 +14,14 @@ from scipy.signal import lfilter
 
 Array = NDArray[np.float64]
 TABLE = Path(__file__).resolve().parent / "spectra.toml"
+SHARED = (
+    "aeroshield",
+    "aeroshield_again",
+    "quanser_aero_pitch",
+    "quanser_aero_yaw",
+    "emps",
+    "pendulum",
+)  # by rigs without their own
 FADED_ROWS = 400  # of an autoregression, until where it started no longer shows
 
 
@@ -45,3 +53,9 @@ def spectra() -> Mapping[str, tuple[Spectrum, ...]]:
             for kind in ("reading", "push")
         }
     )
+
+
+def called(kind: str, names: Sequence[str]) -> tuple[Spectrum, ...]:
+    """The spectra of a kind with these names, in their order; those that rigs share where none is named."""
+    known = {spectrum.name: spectrum for spectrum in spectra()[kind]}
+    return tuple(known[name] for name in names or SHARED)

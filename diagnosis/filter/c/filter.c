@@ -22,7 +22,9 @@
 #define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
 
 #define FASTEST 0.5     /* of a state's own time constant, or of a radian's time of a swing, that a piece of a step may last, */
-#define MOST_PIECES 8.0 /* but for so many: beyond, nothing is left of it anyway */
+#define MANY_PIECES 8.0 /* but for so many: beyond, nothing is left of it anyway, and a piece need only be so short */
+#define FADES 1.5       /* that the series, too, make less of it: at 2 they would begin to grow */
+#define MOST_PIECES 64.0
 
 /* Entries that are identically zero are never written, so these are emptied once a run. */
 typedef struct {
@@ -418,8 +420,8 @@ static int pieces_of(const filter_state *at, double h_s)
             if (A_HAS[i][k] && A_HAS[k][i])
                 swinging = fmax(swinging, fabs(A[i * N + k] * A[k * N + i]));
     }
-    fastest = fmax(fastest, sqrt(swinging));
-    return (int)fmin(fmax(ceil(h_s * fastest / FASTEST), 1.0), MOST_PIECES);
+    const double span = h_s * fmax(fastest, sqrt(swinging)), enough = fmax(MANY_PIECES, ceil(span / FADES));
+    return (int)fmin(fmax(ceil(span / FASTEST), 1.0), fmin(enough, MOST_PIECES));
 }
 
 /* F of the pieces done so far: that of the last times that of those before it. */
@@ -458,6 +460,8 @@ int32_t filter_run(filter_request *request)
         apply(&at, step);
         measure(&at, step);
         events_settle(at.body.x, at.body.sign, at.body.move, request->t_s[step], at.u, at.c);
+        if (step == 0) /* how fast the states are, before any step has told */
+            model_state_slopes(request->t_s[0], at.body.x, at.u, at.c, at.body.sign, at.j.A);
         if (step + 1 < request->steps)
             advance_to_next(&at, step);
         for (int i = 0; i < N; i++)

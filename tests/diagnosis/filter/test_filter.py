@@ -19,13 +19,15 @@ from diagnosis.library.reading_noise import ReadingNoise
 from diagnosis.search.lost_frames import drives
 from diagnosis.validate.prediction import predictions
 from records.log import RunLog
-from sim.bind import BoundPlant, evaluated
+from records.plant import load_plant
+from sim.bind import BoundPlant, bind, evaluated
 from sim.columns import log_columns
 from sim.effect import Role
 from sim.simulate import Noise, simulate
 from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
 from tests.plants import stated_table
+from tests.test_project import ROOT
 from toolchain.host import CText, build_shared, c_text, load_shared
 
 TOLD = round(decisions.UNTOLD_S / 0.01)  # the first row that counts
@@ -308,3 +310,16 @@ def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(
     (found,) = passes(case, nominal_hypothesis(case, -3.2)) or [None]
     assert found is not None
     assert np.nanmax(np.abs(found.w)) < 5.0
+
+
+def test_a_state_that_settles_well_within_a_row_neither_rings_nor_grows() -> None:
+    # Truth: the current settles within L/R = 1 ms, rows are 20 ms apart, and only the encoder's steps of 3 mrad are wrong. So a second
+    # of the true plant is predicted from any row to within three; a current of growing series would throw the angle about by turns.
+    motor = bind(load_plant(ROOT / "plants" / "dc_motor" / "plant.toml"))
+    t_s = np.arange(0.0, 8.0, 0.02)
+    u = 3.0 * np.sign(np.sin(2.0 * np.pi * (0.6 + 0.1 * t_s) * t_s + 0.1))[:, None]
+    run = simulate(motor, t_s, np.zeros(3), drive=u, substeps=40)
+    case = make_case(effect_library(motor), [RunLog(log_columns(motor.model), 0.02, "open", t_s, u, run.y)])
+    found = predictions(case, case.flights[0], nominal_hypothesis(case, -3.0))
+    assert np.nanmax(np.abs(found - run.y)) < 0.01
+    assert np.isfinite(found).sum() > 250

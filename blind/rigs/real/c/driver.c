@@ -82,6 +82,8 @@ void driver_step(const model_t *m, state_t *s, double dt)
         u = stages(fx, s, i, u, dt);
         if (fx->power[i] != 0.0)
             u *= pow(fabs(u) / fx->power_V[i] + 1e-12, fx->power[i]);
+        if (u < 0.0)
+            u *= 1.0 - fx->reverse[i];
         if (fx->dip[i] != 0.0 && dips(fx, i, s->t_s))
             u *= 1.0 - fx->dip[i];
         s->volts[i] = u;

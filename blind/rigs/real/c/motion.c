@@ -45,6 +45,12 @@ static void stop(const model_t *m, state_t *s, int axis)
         at[1] = 0.0;
 }
 
+static void gyro(const model_t *m, state_t *s)
+{
+    if (m->rig.outputs > m->rig.axes)
+        s->x[2] = s->x[1];
+}
+
 void plant_step(const model_t *m, state_t *s, const double push[2], double dt)
 {
     double first[6], middle[6], dx[6];
@@ -61,6 +67,7 @@ void plant_step(const model_t *m, state_t *s, const double push[2], double dt)
             s->bristle[axis] = full + (s->bristle[axis] - full) * exp(-fabs(middle[2 * axis + 1]) * dt / m->width[axis]);
         stop(m, s, axis);
     }
+    gyro(m, s);
     s->t_s += dt;
 }
 
@@ -70,6 +77,7 @@ void state_place(const model_t *m, const double x[6], state_t *s)
     for (int axis = 0; axis < 2; axis++)
         if (m->locked[axis])
             s->x[2 * axis + 1] = 0.0;
+    gyro(m, s);
     sensor_rest(m, s);
 }
 
@@ -94,13 +102,15 @@ static void measure(const model_t *m, const state_t *s, const run_t *run, int ro
 {
     double *apparent = out->apparent + 6 * row;
     out->t_s[row] = s->t_s;
-    for (int i = 0; i < m->rig.axes; i++) {
+    for (int i = 0; i < m->rig.outputs; i++) {
         double shown = s->seen[i] + run->misread[2 * row + i];
         out->exact[2 * row + i] = shown;
         out->y[2 * row + i] = sensor_count(m, shown, run->resolution[i], i);
         apparent[2 * i] = s->seen[i];
         apparent[2 * i + 1] = s->seen_rate[i];
     }
+    if (m->rig.outputs > m->rig.axes)
+        apparent[1] = s->seen[1];
     apparent[4] = s->x[4];
     apparent[5] = s->x[5];
 }
@@ -174,7 +184,7 @@ void fly(const model_t *own, const run_t *run, const double start[6], int shadow
         }
         for (int axis = 0; axis < own->rig.axes; axis++)
             out->at_stop += own->rig.stop[axis] > 0.0 && fabs(s->x[2 * axis]) >= own->rig.stop[axis];
-        out->failed = !isfinite(s->x[0] + s->x[2] + s->x[4] + s->x[5]) || fabs(s->x[0]) > 100.0 || fabs(s->x[2]) > 100.0;
+        out->failed = !isfinite(s->x[0] + s->x[2] + s->x[4] + s->x[5]) || fabs(s->x[0]) > own->rig.lost || fabs(s->x[2]) > own->rig.lost;
     }
     free(s);
 }

@@ -110,6 +110,25 @@ static void quanser_aero(const model_t *m, const state_t *s, const double x[6], 
     inertia[1] = 0.5 * p->my * p->ry * p->ry + body * c * c;
 }
 
+/* What thrust is late by is a Pade approximant of second order, an all-pass: the command less a multiple of its filter's rate. */
+static void antx_2dof_drone(const model_t *m, const state_t *s, const double x[6], double torque[2], double inertia[2], double spin[2])
+{
+    const antx_2dof_drone_t *p = &m->rig.antx_2dof_drone;
+    double a = 6.0 / p->tau, thrust = (s->volts[0] - 6.0 * x[5] / a) * motor_factor(m, s, 0);
+    torque[0] = p->mu * thrust - p->omega_n * (p->omega_n * x[0] + 2.0 * p->xi * x[1]);
+    inertia[0] = 1.0;
+    spin[0] = x[5];
+    spin[1] = a * a / 3.0 * (s->volts[0] - x[4]) - a * x[5];
+}
+
+static void dc_motor(const model_t *m, const state_t *s, const double x[6], double torque[2], double inertia[2], double spin[2])
+{
+    const dc_motor_t *p = &m->rig.dc_motor;
+    torque[0] = p->K * x[4] - p->b * x[1];
+    inertia[0] = p->J;
+    spin[0] = (s->volts[0] - p->R * x[4] - p->K * x[1]) / p->L;
+}
+
 /* Without dry friction and what all axes have alike. */
 void torques(const model_t *m, const state_t *s, const double x[6], double torque[2], double inertia[2], double spin[2])
 {
@@ -121,8 +140,12 @@ void torques(const model_t *m, const state_t *s, const double x[6], double torqu
         aeroshield(m, s, x, torque, inertia);
     else if (m->rig.plant == 2)
         emps(m, s, x, torque, inertia);
-    else
+    else if (m->rig.plant == 3)
         quanser_aero(m, s, x, torque, inertia);
+    else if (m->rig.plant == 4)
+        antx_2dof_drone(m, s, x, torque, inertia, spin);
+    else
+        dc_motor(m, s, x, torque, inertia, spin);
 }
 
 /* What a bearing gives at most against its motion. */
@@ -134,6 +157,8 @@ double dry_level(const model_t *m, const state_t *s, int axis, double rate)
         level += axis ? m->rig.ce150.b_cA : m->rig.ce150.b_cE;
     else if (m->rig.plant == 2)
         level += m->rig.emps.F_c;
+    else if (m->rig.plant == 5)
+        level += m->rig.dc_motor.tau_c;
     if (fx->stribeck[axis] != 0.0)
         level += fx->stribeck[axis] * exp(-fabs(rate) / fx->stribeck_rate[axis]);
     if (fx->load_friction[axis] != 0.0)

@@ -19,11 +19,22 @@ typedef struct {
 } quanser_aero_t;
 
 typedef struct {
-    int plant;                 /* 0 ce150, 1 aeroshield, 2 emps, 3 quanser_aero */
-    int axes, inputs;
+    double omega_n, xi, mu, tau;
+} antx_2dof_drone_t;
+
+typedef struct {
+    double R, L, K, J, b, tau_c, u_max;
+} dc_motor_t;
+
+typedef struct {
+    int plant;                 /* 0 ce150, 1 aeroshield, 2 emps, 3 quanser_aero, 4 antx_2dof_drone, 5 dc_motor */
+    int axes, inputs, outputs; /* an output more than axes: the rate of axis 0, by a gyro */
     double low_V[2], high_V[2], stop[2];           /* limits of the inputs; a stop at +-, 0: none */
+    double lost;               /* an angle at which the run counts for nothing */
     ce150_t ce150;
     aeroshield_t aeroshield;
     emps_t emps;
     quanser_aero_t quanser_aero;
+    antx_2dof_drone_t antx_2dof_drone;
+    dc_motor_t dc_motor;
 } rig_t;

@@ -19,11 +19,11 @@ static void shaft(const model_t *m, const state_t *s, int axis, double *angle, d
 
 void sensor_rest(const model_t *m, state_t *s)
 {
-    for (int axis = 0; axis < m->rig.axes; axis++) {
+    for (int axis = 0; axis < m->rig.outputs; axis++) {
         double angle, rate;
         s->lost_angle[axis] = 0.0;
         shaft(m, s, axis, &angle, &rate);
-        s->seen[axis] = s->slow[axis] = s->held[axis] = s->filtered[axis] = angle;
+        s->seen[axis] = s->shown[axis] = s->slow[axis] = s->held[axis] = s->filtered[axis] = angle;
         s->seen_rate[axis] = rate;
         for (int i = 0; i < PAST; i++) /* as if it had come here at this rate */
             s->past[i][axis] = angle;
@@ -44,8 +44,8 @@ void sensor_step(const model_t *m, state_t *s, double dt)
 {
     const effects_t *fx = &m->effects;
     s->now = (s->now + 1) % PAST;
-    for (int axis = 0; axis < m->rig.axes; axis++) {
-        double angle, rate, before = s->seen[axis];
+    for (int axis = 0; axis < m->rig.outputs; axis++) {
+        double angle, rate, before = s->shown[axis];
         s->lost_angle[axis] += fx->missed[axis] * fabs(s->volts[axis]) * s->x[2 * axis + 1] * dt;
         shaft(m, s, axis, &angle, &rate);
         if (fx->sensor_lag_s[axis] > 0.0)
@@ -59,6 +59,7 @@ void sensor_step(const model_t *m, state_t *s, double dt)
         } else if (fx->sensor_lag_s[axis] > 0.0 || fx->sensor_delay_s[axis] > 0.0) {
             rate = (angle - before) / dt;
         }
+        s->shown[axis] = angle;
         if (m->filter_s[axis] > 0.0)
             angle = s->filtered[axis] += (angle - s->filtered[axis]) * -expm1(-dt / m->filter_s[axis]);
         s->seen[axis] = angle;

@@ -9,11 +9,12 @@ typedef struct {
 
 typedef struct {
     double t_s;
-    double x[6];               /* angle, rate of axis 0, of axis 1; speeds of rotors 0 and 1 */
+    double x[6];               /* angle, rate of axis 0, of axis 1; speeds of rotors 0 and 1, or what else lags: two filters, a current.
+                                * Where a gyro measures axis 0 its rate stands in the place of the second angle, as it is read there. */
     double bristle[2];
     line_t line[2];
     double slewed_V[2], lagged_V[2], played_V[2], load, volts[2];      /* load: of the supply, in 10 V */
-    double seen[2], seen_rate[2], slow[2], held[2], filtered[2], lost_angle[2];
+    double seen[2], seen_rate[2], shown[2], slow[2], held[2], filtered[2], lost_angle[2];
     double past[1024][2];      /* angles as shown, one entry per step */
     int now;
 } state_t;
