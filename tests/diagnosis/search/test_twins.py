@@ -11,7 +11,7 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.search.beam import beam_of
+from diagnosis.search.beam import beam_of, finalists
 from diagnosis.search.draughts import with_noise_beside
 from diagnosis.search.exchange import fit_twins, is_twin, twins_of
 from diagnosis.search.fitting import refined
@@ -48,6 +48,14 @@ def test_a_lag_before_the_plant_has_the_lag_behind_it_among_its_twins(late: Case
     assert is_twin(late, named("input.lag", "arm.coulomb"), named("arm.coulomb", "theta_sensor.lag"))
     assert not is_twin(late, named("input.lag", "arm.coulomb"), named("input.lag", "arm.offset_force"))
     assert not is_twin(late, named("input.lag"), named("input.lag", "arm.coulomb"))
+
+
+def test_noise_is_taken_beside_all_that_is_hardly_told_from_one_another(late: Case) -> None:
+    # A lag before the arm is no twin of a delay behind it, but both are of a lag behind it; a constant force is of none.
+    names = ("theta_sensor.delay", "arm.offset_force", "theta_sensor.lag", "input.lag")
+    asked = [replace(named(name), evidence=-float(place)) for place, name in enumerate(names)]
+    assert not is_twin(late, asked[0], asked[3])
+    assert {entry.effects for entry in finalists(late, asked)} == {(name,) for name in names if "force" not in name}
 
 
 def test_of_two_names_of_one_thing_a_diagnosis_asks_for_one() -> None:
