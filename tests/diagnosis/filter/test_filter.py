@@ -27,6 +27,7 @@ from sim.simulate import Noise, simulate
 from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
 from tests.plants import stated_table
+from tests.soak import sampled
 from tests.test_project import ROOT
 from toolchain.host import CText, build_shared, c_text, load_shared
 
@@ -145,9 +146,15 @@ def test_further_instants_change_nothing(stuck: tuple[Case, Hypothesis], sensor:
     assert late.log_likelihood == pytest.approx(plain.log_likelihood, abs=0.5)
 
 
-def test_an_effect_of_no_size_is_as_likely_as_none(case: Case, settled: Hypothesis) -> None:
+@pytest.mark.parametrize("rig", sampled(["arm", "ce150"], keep=["arm"]))
+def test_an_effect_of_no_size_is_as_likely_as_none(request: pytest.FixtureRequest, rig: str) -> None:
     # Each effect at no size, its shapes where a search ends, is the plant alone: within two nats, which no rule decides by, whichever
     # library it is compiled in. Coarse readings are read anew, and a delay that scatters has a size.
+    if rig == "arm":
+        plain_fit = plain_linearisation()
+        case, settled = plain_fit.case, plain_fit.fit.hypothesis
+    else:
+        case, settled = request.getfixturevalue("case"), request.getfixturevalue("settled")
     library, plain = case.library, likelihood_of(case, settled)
     for name in library.candidates:
         effect = library.effects[name]

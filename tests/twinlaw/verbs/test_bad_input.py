@@ -80,7 +80,11 @@ BAD_PLANTS = [
         _replace(ELEVATION_POLES[1], "[[-4.0, 1.0], -5.0, -8.0, -14.0, -18.0, -24.0]"),
         ["conjugate"],
     ),
-    ("five poles", _replace(ELEVATION_POLES[1], "[-4.0, -5.0, -8.0, -14.0, -18.0]"), ["6"]),
+    (
+        "five poles",
+        _replace(ELEVATION_POLES[1], "[-4.0, -5.0, -8.0, -14.0, -18.0]"),
+        ["5 poles", "two poles for each state"],
+    ),
     ("unknown free degree", _replace('free_degree = "integral"', 'free_degree = "pinv"'), ["pinv", "q3_zero"]),
 ]
 
