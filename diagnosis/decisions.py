@@ -248,13 +248,16 @@ LIKELY = Limit(
 )
 MISSED = Limit(15.0, "nats", "far less likely", "the Quanser arm; seeds 900006 and 900007")
 WORTH_REFINING = Limit(
-    0.2, "share of the best first fit's gain", "first fits below are not fitted to their end: time", DEVELOPMENT
+    0.2,
+    "share of the best fit's gain",
+    "first fits below are not fitted to their end, nor ends settled: time",
+    DEVELOPMENT,
 )
 FURTHER_GAIN = Limit(10.0, "nats", "a further effect must promise so much", DEVELOPMENT)
 NEAR_BEST = Limit(
     30.0,
     "nats",
-    "a first fit so far short of the best is not fitted to its end",
+    "a first fit further short of the best is not fitted to its end; an end so near it is settled, whatever its share",
     "pairs and triples of seeds 900006 and 900007",
 )
 INSTEAD = Count(3, "effects", "tried in the place of another", "pairs and triples of seeds 900006 and 900007")
