@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 SHORTEST_LAG_S = 1e-6  # a shorter one is none: to it equations are divided by it
 # Noise intensity of states that have none, in any unit next to nothing: without it their variances fade into numbers so small that a
 # processor takes a hundred times as long for each.
-LEAST_NOISE = 1e-40
+NEXT_TO_NONE = 1e-40
 START_SD = 0.05  # of states that effects brought, in their own units
 ELSEWHERE = -1  # instead of a log's number: all logs that have no values of their own
 
@@ -165,7 +165,7 @@ def _sent(
 def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothesis: Hypothesis) -> Noise:
     """The filter's noise: on each axis' speed its process noise, on effects that are noise their own, next to none elsewhere."""
     x0, p0 = start_under(compiled, flight)
-    q = np.full(len(x0), LEAST_NOISE)
+    q = np.full(len(x0), NEXT_TO_NONE)
     q[list(case.library.velocities)] = 10.0 ** (2.0 * hypothesis.process_noise)
     forget = np.zeros_like(q)
     for name, values in hypothesis.effects.items():

@@ -7,7 +7,7 @@ from blind.effects.draws import Source, Uniform
 from blind.effects.effect import Effect, Size
 from blind.rigs.real.plant import RealPlant
 
-BOUNDS = (0.003, 30.0)
+BOUNDS = (0.003, 30.0)  # sizes of an effect, in references, among which one as severe as was drawn is looked for
 
 
 def outside(

@@ -10,7 +10,7 @@ from blind.rigs.shaping import smoothed
 
 Array = NDArray[np.float64]
 Held = tuple[bool, bool]
-DOUBLET_S = 0.08
+DOUBLET_S = 0.08  # after which a push is followed by its opposite, on an axis that turns freely
 WASHOUT_S = 2.0  # after which a command that an axis only integrates is taken back
 
 

@@ -8,7 +8,7 @@ from blind.rigs.real.orders import Array, Asked, Orders, free
 from blind.simulation.ce150 import Rig
 from blind.simulation.rest import rest
 
-FASTEST_RAD_S = 1500.0
+FASTEST_RAD_S = 1500.0  # rotor speeds at rest are looked for up to here
 # Angle, integral and rate gains in V/rad, V/(rad s), V s/rad.
 CE150_GAINS = np.array([[3.8, 2.3, 2.0], [3.0, 0.8, 1.5]])
 AERO_GAINS = np.array([[20.0, 6.0, 15.0], [15.0, 3.0, 14.0]])
