@@ -85,12 +85,12 @@ def _trial(
     z = {}
     for a in sorted({a for a, _ in pairs}):
         data = recorded(there, good[a])
-        process_noise = fitted[a].fit.hypothesis.process_noise
-        own = missed(data, fitted[a].fit, plan, process_noise)
+        noisy = fitted[a].fit.hypothesis
+        own = missed(data, fitted[a].fit, plan, noisy)
         if own is None:
             return None
         for b in (b for one, b in pairs if one == a):
-            other = missed(data, fitted[b].fit, plan, process_noise)
+            other = missed(data, fitted[b].fit, plan, noisy)
             z[a, b] = 2.0 * SURELY_APART if other is None else float(np.sqrt(max(other - own, 0.0)))
     return Trial(plan, good, z)
 

@@ -117,12 +117,14 @@ def recorded(case: Case, simulated_experiment: SimulatedExperiment) -> Case:
     return replace(made, stated=case.stated, stated_sd=case.stated_sd)
 
 
-def missed(data: Case, one: Fit, plan: Plan, process_noise: Array) -> float | None:
+def missed(data: Case, one: Fit, plan: Plan, noisy: Hypothesis) -> float | None:
     """m(A): the squares of what a fitted hypothesis misses of the data, re-tuned; None where its filter cannot follow at all.
 
-    Both hypotheses of a pair are given the same `process noise`: one that takes more of it would seem to miss less.
+    Both hypotheses of a pair are given the process noise of the same `noisy` one: one that takes more of it would seem to miss less.
     """
-    hypothesis = replace(_mounted(data, plan, one.hypothesis), process_noise=process_noise)
+    hypothesis = replace(
+        _mounted(data, plan, one.hypothesis), process_noise=noisy.process_noise, state_noise=noisy.state_noise
+    )
     compiled = data.library.compiled(hypothesis.effects)
     count = len(hypothesis.theta)
     numbers = [

@@ -28,13 +28,35 @@ def axis_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
     friction."""
     axes = range(len(hypothesis.process_noise))
     found = [Number(partial(_noise, axis), partial(_with_all, case, axis), KNOWN) for axis in axes]
-    return found + _rest(case, hypothesis)
+    return found + _of_states(case, hypothesis) + _rest(case, hypothesis)
 
 
 def white_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
     """The same for white noise alone, where what comes and goes has numbers of its own."""
     axes = range(len(hypothesis.process_noise))
-    return [Number(partial(_noise, axis), partial(_with_white, axis), KNOWN) for axis in axes] + _rest(case, hypothesis)
+    found = [Number(partial(_noise, axis), partial(_with_white, axis), KNOWN) for axis in axes]
+    return found + _of_states(case, hypothesis) + _rest(case, hypothesis)
+
+
+def _of_states(case: Case, hypothesis: Hypothesis) -> list[Number]:
+    """One number for the noise of each measured state, as far below and above the size of its readings as those of axes may be beside a
+    speed of 1 rad/s."""
+    sizes = case.measured_sizes
+    return [
+        Number(partial(_state_noise, state), partial(_with_state_noise, state, size), (KNOWN[0] + size, KNOWN[1]))
+        for state in hypothesis.state_noise
+        if state in sizes
+        for size in [float(np.log10(sizes[state]))]
+    ]
+
+
+def _state_noise(state: str, hypothesis: Hypothesis) -> float:
+    return hypothesis.state_noise[state]
+
+
+def _with_state_noise(state: str, size: float, hypothesis: Hypothesis, x: float) -> Hypothesis:
+    level = float(np.clip(x, size + LEAST_NOISE, size + MOST_NOISE))
+    return replace(hypothesis, state_noise={**hypothesis.state_noise, state: level})
 
 
 def _rest(case: Case, hypothesis: Hypothesis) -> list[Number]:

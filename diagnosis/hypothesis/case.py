@@ -96,6 +96,24 @@ class Case:
         signs = [spec.sign for spec in self.library.bound.model.parameters for _ in range(spec.count)]
         return [int(place) for place in self.free if signs[place] != "any"]
 
+    @cached_property
+    def measured_sizes(self) -> Mapping[str, float]:
+        """The plant's own states that some log reads, but for what moves as an axis does, and the standard deviation of their readings:
+        rotor speeds, currents, temperatures."""
+        model, library = self.library.bound.model, self.library
+        moving = {str(state) for axis in model.axes for state in (axis.position, axis.velocity)}
+        read = {
+            str(model.outputs[name]) if name in model.outputs else name: place
+            for place, name in enumerate(library.outputs)
+        }
+        found = dict[str, float]()
+        for state in library.states:
+            if state in read and state not in moving:
+                y = np.concatenate([flight.filter_input.y[:, read[state]] for flight in self.flights])
+                size = float(np.nanstd(y)) if np.isfinite(y).any() else 0.0
+                found |= {state: size} if size > 0.0 else {}
+        return found
+
     def with_flights(self, flights: Sequence[FilteredLog]) -> "Case":
         """The same plant with other flights."""
         return replace(self, flights=tuple(flights))

@@ -32,8 +32,9 @@ class Hypothesis:
     """Steps `theta` (free,) of the plant's uncertain coefficients in standard deviations, `effects` with their values by symbol, and
     `process noise` (axes,): log10 of the noise on each axis' speed per square root of a second.
 
-    `rest_doubt` is log10 of how long, in s, dry friction is in doubt where an axis comes to rest or leaves it, `reading_noise` the errors
-    of readings that are alike from row to row, by output: noise as the others.
+    `state_noise` is the same of states that are measured and no axis', each in its own unit: a speed that is read cuts the chain there, and
+    what drives it is judged apart from what it drives. `rest_doubt` is log10 of how long, in s, dry friction is in doubt where an axis
+    comes to rest or leaves it, `reading_noise` the errors of readings that are alike from row to row, by output: noise as the others.
     `own`: what happens at another instant and by another size in each log has values by the log's number, and by ELSEWHERE those of all
     other logs; in `effects` it has those of the first in which it happens.
     """
@@ -44,11 +45,16 @@ class Hypothesis:
     own: Mapping[str, Mapping[int, Values]] = field(default_factory=dict)
     rest_doubt: float = FIRST_REST_DOUBT
     reading_noise: Mapping[str, ReadingNoise] = field(default_factory=dict)
+    state_noise: Mapping[str, float] = field(default_factory=dict)
 
     def with_noise_of(self, other: "Hypothesis") -> "Hypothesis":
         """The same with all noise that another supposes."""
         return replace(
-            self, process_noise=other.process_noise, rest_doubt=other.rest_doubt, reading_noise=other.reading_noise
+            self,
+            process_noise=other.process_noise,
+            rest_doubt=other.rest_doubt,
+            reading_noise=other.reading_noise,
+            state_noise=other.state_noise,
         )
 
     def with_effects(self, effects: Mapping[str, Values]) -> "Hypothesis":
@@ -101,7 +107,14 @@ def scaled(case: Case, hypothesis: Hypothesis, axis: int, level: float) -> Hypot
 
 def nominal_hypothesis(case: Case, process_noise: float) -> Hypothesis:
     """The plant as stated, with the effects that its file states."""
-    return Hypothesis(np.zeros(len(case.free)), case.stated, np.full(len(case.library.bound.model.axes), process_noise))
+    axes = len(case.library.bound.model.axes)
+    states = first_state_noise(case, process_noise)
+    return Hypothesis(np.zeros(len(case.free)), case.stated, np.full(axes, process_noise), state_noise=states)
+
+
+def first_state_noise(case: Case, level: float) -> dict[str, float]:
+    """Noise on measured states as large beside their readings as `level` is beside a speed of 1 rad/s."""
+    return {state: level + float(np.log10(size)) for state, size in case.measured_sizes.items()}
 
 
 def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -> Array:
@@ -167,6 +180,8 @@ def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothes
     x0, p0 = start_under(compiled, flight)
     q = np.full(len(x0), NEXT_TO_NONE)
     q[list(case.library.velocities)] = 10.0 ** (2.0 * hypothesis.process_noise)
+    for measured, level in hypothesis.state_noise.items():
+        q[compiled.states.index(measured)] = 10.0 ** (2.0 * level)
     forget = np.zeros_like(q)
     for name, values in hypothesis.effects.items():
         state = case.library.effects[name].filter_state

@@ -15,7 +15,7 @@ from diagnosis.fit.jitter import scatters, with_jitter
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case, beginning_of
-from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise
 from sim.effect import Role
 
 Array = NDArray[np.float64]
@@ -104,6 +104,7 @@ def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
         hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if not case.library.effects[n].is_noise}),
         process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE),
         reading_noise={},
+        state_noise=first_state_noise(case, float(decisions.FIRST_PROCESS_NOISE)),
     )
     start = _begun(case, open_to_all)
     if is_astray(hypothesis, decisions.ASTRAY_REFINED):
@@ -187,7 +188,11 @@ def _lessened(case: Case, start: Hypothesis, effect: str) -> Hypothesis:
 def _from_stated(case: Case, start: Hypothesis) -> Fit | None:
     """The fit from the parameters as stated: where the nominal plant had gone far astray, nothing is found from there."""
     low_noise = np.minimum(start.process_noise, decisions.FIRST_PROCESS_NOISE)
-    return _begun(case, replace(start, theta=np.zeros_like(start.theta), process_noise=low_noise))
+    first = first_state_noise(case, float(decisions.FIRST_PROCESS_NOISE))
+    low_states = {state: min(level, first.get(state, level)) for state, level in start.state_noise.items()}
+    return _begun(
+        case, replace(start, theta=np.zeros_like(start.theta), process_noise=low_noise, state_noise=low_states)
+    )
 
 
 def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:

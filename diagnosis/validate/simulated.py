@@ -161,10 +161,12 @@ def _begun(compiled: CompiledFilter, x0: Array) -> Array:
 
 
 def _shaken(case: Case, hypothesis: Hypothesis, locked: tuple[str, ...]) -> Array:
-    """Process noise (states,) per square root of a second: on the speeds of axes that are free."""
+    """Process noise (states,) per square root of a second: on the speeds of axes that are free, and on measured states."""
     states = case.library.states
     found = np.zeros(case.library.compiled(hypothesis.effects).filter.states)
     for axis, process_noise in zip(case.library.bound.model.axes, hypothesis.process_noise, strict=True):
         if axis.name not in locked:
             found[states.index(str(axis.velocity))] = 10.0**process_noise
+    for state, level in hypothesis.state_noise.items():
+        found[states.index(state)] = 10.0**level
     return found

@@ -88,8 +88,8 @@ def separations(case: Case, one: FittedHypothesis, other: FittedHypothesis) -> d
         there = setting(case, plan)
         flown = simulate_experiment(there, plan, law, one.fit.hypothesis)
         assert flown is not None
-        data, process_noise = recorded(there, flown), one.fit.hypothesis.process_noise
-        own, missing = (missed(data, fitted.fit, plan, process_noise) for fitted in (one, other))
+        data, noisy = recorded(there, flown), one.fit.hypothesis
+        own, missing = (missed(data, fitted.fit, plan, noisy) for fitted in (one, other))
         assert own is not None
         assert missing is not None
         found[plan.name] = float(np.sqrt(max(missing - own, 0.0)))

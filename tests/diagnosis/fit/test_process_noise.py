@@ -7,10 +7,15 @@ import pytest
 
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.process_noise import with_process_noise
-from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
+from diagnosis.library.effect_library import effect_library
+from records.log import RunLog
+from sim.columns import log_columns
+from sim.simulate import Noise, simulate
 from tests.diagnosis.arm import arm_case, arm_log
+from tests.plants import bound
 
 RUB = {"arm.coulomb": {"b": 4e-4}}  # 8 rad/s^2, which stops the arm within a row
 
@@ -47,3 +52,32 @@ def test_true_friction_is_likelier_than_bristles_that_mimic_it(rubbing: Case) ->
 def test_friction_of_the_wrong_size_is_in_doubt_or_shaken(rubbing: Case) -> None:
     found = with_process_noise(rubbing, supposing(rubbing, {"arm.coulomb": {"b": 2e-4}}))
     assert found.process_noise[0] > -1.0
+
+
+def coil_case(noise: float) -> Case:
+    """A coil under steps of duty, whose current is shaken by `noise`, in A per sqrt(s), and read as surely as its file states."""
+    rig = bound("maglev_coil")
+    t_s = 0.001 * np.arange(8000)
+    u = np.random.default_rng(5).choice([0.2, 0.4, 0.8], len(t_s) // 200 + 1).repeat(200)[: len(t_s), None]
+    run = simulate(rig, t_s, np.zeros(1), u, noise=Noise(6, process_sd=np.array([noise])), keep="y")
+    y = np.asarray(run.y).reshape(len(t_s), -1) + np.random.default_rng(7).normal(0.0, 7e-3, (len(t_s), 1))
+    return make_case(effect_library(rig), [RunLog(log_columns(rig.model), 0.001, "open", t_s, u, y)])
+
+
+def test_a_measured_state_that_is_no_axis_has_noise_of_its_own() -> None:
+    """Truth: 0.5 A per sqrt(s), to a tenth of a decade: the same rows tell how sure readings are."""
+    case = coil_case(0.5)
+    (state,) = case.measured_sizes
+    found = with_process_noise(case, nominal_hypothesis(case, -1.5))
+    assert found.state_noise[state] == pytest.approx(np.log10(0.5), abs=0.1)
+
+
+def test_a_measured_state_that_follows_its_equation_has_hardly_any_noise() -> None:
+    case = coil_case(0.0)
+    (state,) = case.measured_sizes
+    found = with_process_noise(case, nominal_hypothesis(case, -1.5))
+    assert found.state_noise[state] < np.log10(0.5) - 1.0
+
+
+def test_what_moves_as_an_axis_does_is_no_measured_state() -> None:
+    assert arm_case(arm_log(seed=72)).measured_sizes == {}
