@@ -62,6 +62,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         verdict_reason=_reason(judged).value,
         decisions=seen.decisions,
         note_records=notes,
+        comparison=weighed.comparison,
     )
     shape = shape_of(found.linearisation, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
     checked = None if holdout is None else holdout.case

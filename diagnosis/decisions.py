@@ -160,12 +160,6 @@ DRAUGHT = Limit(
     "a torque that comes and goes is told as a gust from there on, where nothing else is missing; less is a rig's usual noise",
     "what the best models of the real rigs leave, blind/rigs/real/spectra.toml",
 )
-USUAL_GUST = Limit(
-    0.05,
-    "shares of the axis' usual torque",
-    "a larger torque that comes and goes is part of the gap, and names are weighed without it",
-    "third rig: to 0.03; EMPS, whose friction is left out: 0.1",
-)
 ALLOWED_GAIN = Limit(
     10.0,
     "nats",
@@ -339,21 +333,7 @@ RETUNE_NATS = Limit(4.0, "nats", "that each parameter beyond its spread costs")
 RETUNE_MOST = Count(4, "parameters", "more are no re-tune")
 
 # How probable (decide)
-ALIKE = Limit(10.0, "nats", "two hypotheses closer than this are alike, however small the gap", DEVELOPMENT_21)
-OFF_FORM = Limit(
-    1.0, "nats", "what a form a little off the truth may cost grows as OFF_FORM gain^OFF_POWER", DEVELOPMENT_21
-)
-OFF_POWER = Limit(0.35, "1", "see OFF_FORM", DEVELOPMENT_21)
-OFF_SHARE = Limit(4e-4, "share of the gain", "and as this share of it", DEVELOPMENT_21)
-FURTHER = Limit(2.5, "scales", "what each further effect must overcome", DEVELOPMENT_21)
-LEFT_NATS = Limit(20.0, "nats", "a right effect of the library may leave so much to forms", DEVELOPMENT_21)
-LEFT_SHARE = Limit(0.15, "share of the gain", "and this share of what it explains", DEVELOPMENT_21)
-LEFT_POWER = Limit(3.0, "1", "beyond that an unknown effect becomes likelier by this power", DEVELOPMENT_21)
-UNKNOWN = Limit(1.7, "scales", "log odds against an unknown effect where exactly as much is left", DEVELOPMENT_21)
-FARTHEST_GAIN = Limit(3e4, "nats", "a larger gain only says that the nominal plant had lost its way", DEVELOPMENT)
-RETUNE_COST = Limit(10.0, "nats", "of parameters beyond their spread beside effects")
 UNNAMED = Limit(0.95, "probability", "of an unknown effect where a name is forbidden")
-FREE_SPREAD = Limit(3.0, "standard deviations", "a parameter within costs no more than its prior", DEVELOPMENT)
 NATS_PER_FORM = Limit(2.0, "nats", "that each further form of a class costs, with ln of the number of its forms")
 MOST_FORMS = Count(4, "forms", "of one class")
 SAME_PLACE = Limit(
@@ -364,9 +344,6 @@ OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the libra
 # What other logs say (decide)
 PREFERRED = Count(4, "names", "of which a hold-out is asked which it prefers: time")
 LEAST_PREFERRED = Limit(0.02, "probability", "a less probable name is not asked: time")
-FARTHEST_LOGIT = Limit(
-    6.0, "logits", "surer weights are told to the learned law as this: evidence of dense readings is too sure"
-)
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
 LIKELIER_THAN_NOT = Limit(0.5, "probability", "likelier than all else together")
 NO_FAVOUR = Limit(0.0, "1", "as much speaks for a name as against it")

@@ -4,19 +4,18 @@ Every rule that has a say leaves a record on the way (records/reasons.py), and e
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
-from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred, surely_better
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.unknown import left_beside
-from diagnosis.decide.weighing import Weighed, first_share, likeliest, weigh
+from diagnosis.decide.weighing import Foretold, Tried, Weighed, first_share, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.detection import detect, form_scores
@@ -30,7 +29,7 @@ from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search, with_twins
-from diagnosis.search.draughts import Draught, beyond_noise, draught, gust_shares, without_gusts
+from diagnosis.search.draughts import Draught, draught, gust_shares, without_gusts
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
@@ -45,10 +44,10 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
     material = replace(material, notes=(*material.notes, *_columns(seen, material.firmware)))
-    seen = seen if _alarmed(seen.detection.p) else _over_noise(seen)
+    seen = _beside_noise(seen)
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
-    seen, found = _explained(_beside_noise(seen))
+    seen, found = _explained(seen)
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
     beyond = retune(seen.case, seen.retuned.fit)
@@ -151,26 +150,36 @@ def _detected(case: Case, checked: Case | None) -> Seen:
 
 
 def _beside_noise(seen: Seen) -> Seen:
-    """The same from the plant without torques that come and go and are larger than noise is: those follow any motion, so that beside them a
-    name would explain only what is fast. Whether there is a gap at all has been asked with them."""
-    return _without(seen, beyond_noise(seen.case, seen.retuned.fit.hypothesis)) or seen
-
-
-def _over_noise(seen: Seen) -> Seen:
-    """The same where nothing shows beside torques that come and go; but from the plant without them where a name is by far likelier than
-    those are, as dry friction is that they follow."""
+    """The same, from the plant without torques that come and go where a name is to be had for them: those follow any motion row by row, as
+    slow as it is, and beside them a name would explain only what is fast. What follows does not foresee, so the best name there must
+    predict the logs better over a second; where nothing shows beside them, it must be by far likelier."""
     still = _without(seen, list(gust_shares(seen.case, seen.retuned.fit.hypothesis)))
     if still is None:
         return seen
-    best = _alone(still).best(1)[0]
-    gain = best.evidence - seen.retuned.evidence
-    named = bool(best.effects) and gain > decisions.OVER_NOISE
-    outcome = "a cause is looked for" if named else "noise"
-    rule = decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.OVER_NOISE, outcome)
-    if not named:
+    begun = _alone(still)
+    best = begun.best(1)[0]
+    rule, stands = (_foreseen if _alarmed(seen.detection.p) else _over_noise)(seen, best)
+    if not stands:
         return seen.because(rule)
-    chance = min(seen.detection.p, float(np.exp(-gain)))
-    return replace(still.because(rule), detection=replace(seen.detection, p=chance))
+    chance = min(seen.detection.p, float(np.exp(-max(best.evidence - seen.retuned.evidence, 0.0))))
+    still = replace(still, begun=begun, detection=replace(seen.detection, p=chance))
+    return still.because(rule)
+
+
+def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
+    """Whether the best name without torques that come and go predicts the logs better than the plant with them, and the rule."""
+    gain = FittedLogs(seen.case).gain(best.fit.hypothesis, seen.retuned.fit.hypothesis) if best.effects else 0.0
+    stands = gain >= decisions.MATTERS
+    outcome = "a cause is looked for without noise" if stands else "a cause is looked for beside noise"
+    return decided("beside_noise", " + ".join(best.effects) or "plant", gain, decisions.MATTERS, outcome), stands
+
+
+def _over_noise(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
+    """Whether it is by far likelier, as dry friction is that they follow, and the rule."""
+    gain = best.evidence - seen.retuned.evidence
+    stands = bool(best.effects) and gain > decisions.OVER_NOISE
+    outcome = "a cause is looked for" if stands else "noise"
+    return decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.OVER_NOISE, outcome), stands
 
 
 def _without(seen: Seen, gusts: Sequence[str]) -> Seen | None:
@@ -181,7 +190,7 @@ def _without(seen: Seen, gusts: Sequence[str]) -> Seen | None:
         return None
     linearisation = linearised(case, still.fit)
     score_tests = tuple(score_effects(case, linearisation, case.library.candidates))
-    return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests)
+    return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests, begun=None)
 
 
 def _false_alarm(of: str, p: float) -> Decision:
@@ -219,8 +228,8 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     seen = seen.because(*found_there.decisions)
     if found_there.case is seen.case:
         return seen, None
-    again = _beside_noise(_detected(found_there.case, seen.checked))
-    return seen, replace(again, beside=found_there.beside, decisions=(*seen.decisions, *again.decisions))
+    again = _beside_noise(replace(_detected(found_there.case, seen.checked), beside=found_there.beside))
+    return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
 
 
 def _searched(seen: Seen) -> Search | None:
@@ -231,28 +240,37 @@ def _searched(seen: Seen) -> Search | None:
 
 
 def _alone(seen: Seen) -> Alone:
-    return alone(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
+    return seen.begun or alone(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
 
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
     logs = FittedLogs(seen.case)
-    begun, weighed, holdout = _ranked(seen, material, found, beyond, logs)
-    wider = found if not weighed.fitted else with_twins(seen.case, found, weighed.fitted[0])
+    ranked = _ranked(seen, material, found, beyond, logs)
+    wider = found if not ranked.weighed.fitted else with_twins(seen.case, found, ranked.weighed.fitted[0])
     if wider is not found:
         found = wider
-        begun, weighed, holdout = _ranked(seen, material, found, beyond, logs, holdout)
-    seen, retuned = begun, seen.retuned
-    weighed, told, rules = _favoured(holdout, weighed)
+        ranked = _ranked(seen, material, found, beyond, logs, ranked.holdout)
+    seen, weighed, holdout, retuned = ranked.seen, ranked.weighed, ranked.holdout, seen.retuned
     doubts = doubt(seen.case, found, weighed, material.names)
-    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *told)
+    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *ranked.notes)
     share = first_share(seen.case, weighed)
     chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted, share)
-    seen = seen.because(*rules, *doubts.decisions, *named_rules)
+    seen = seen.because(*doubts.decisions, *named_rules)
     if holdout is not None:
         chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)
         seen, notes = seen.because(*rules), (*notes, *told)
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
+
+
+@dataclass(frozen=True, eq=False)
+class _Ranked:
+    """What was found by what the logs and the hold-out say of it, the hold-out, and what is to be told of it."""
+
+    seen: Seen
+    weighed: Weighed
+    holdout: Holdout | None
+    notes: tuple[Note, ...] = ()
 
 
 def _ranked(
@@ -262,37 +280,28 @@ def _ranked(
     beyond: Retune | None,
     logs: FittedLogs,
     known: Holdout | None = None,
-) -> tuple[Seen, Weighed, Holdout | None]:
-    """What was found by what the logs and the hold-out say of it, and the hold-out; `known` is one that was made before."""
-    weighed, idle = without_idle(logs, _weighed(seen, found, beyond), found.fitted)
-    seen = seen.because(*found.decisions, *weighed.decisions, *idle)
+) -> _Ranked:
+    """What was found, ranked; `known` is a hold-out that was made before."""
+    tried, idle = without_idle(logs, _tried(seen, found, beyond))
+    weighed = weigh(tried)
+    seen = seen.because(*found.decisions, *idle)
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     if holdout is None or not weighed.fitted:
-        return seen, weighed, holdout
-    weighed, preferences = preferred(holdout, weighed)
-    return seen.because(*preferences), weighed, holdout
+        return _Ranked(seen.because(*weighed.decisions), weighed, holdout)
+    nats, preferences = preferred(holdout, weighed)
+    first = weigh(tried, Foretold(nats)).fitted[0]
+    told, notes, rules = asked(holdout, first)
+    weighed = weigh(tried, Foretold(nats, favour(told)))
+    return _Ranked(seen.because(*preferences, *rules, *weighed.decisions), weighed, holdout, notes)
 
 
-def _favoured(holdout: Holdout | None, weighed: Weighed) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
-    """What was weighed, with what the hold-out says of it, as probabilities that come true."""
-    if not weighed.fitted:
-        return weighed, (), ()
-    if holdout is None:
-        weighed, law = calibrated(weighed, None)
-        return weighed, (), law
-    told, notes, rules = asked(holdout, weighed.fitted[0])
-    weighed, law = calibrated(weighed, favour(told))
-    return weighed, notes, (*rules, *law)
-
-
-def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> Weighed:
-    """The probabilities; all that swings beside noise is a form of its own."""
+def _tried(seen: Seen, found: Search, beyond: Retune | None) -> Tried:
+    """All that may explain the gap; what swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     library = seen.case.library
-    own = [library.effects[name] for name in best.effects]
-    left = left_beside(form_scores(linearised(seen.case, best.fit)), own)
-    score = None if beyond is None else beyond.score
-    return weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
+    left = left_beside(form_scores(linearised(seen.case, best.fit)), [library.effects[name] for name in best.effects])
+    named = tuple(entry for entry in found.fitted if entry.effects)
+    return Tried(named, seen.retuned, library, left, None if beyond is None else beyond.score)
 
 
 def _checked(

@@ -16,7 +16,7 @@ from diagnosis.explain.curve import Shape
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.beam import Search
+from diagnosis.search.beam import Alone, Search
 from diagnosis.search.retune import Retune
 from diagnosis.validate.shrinkage import Predicted
 from records.diagnosis import Diagnosis, Firmware
@@ -62,7 +62,7 @@ class Material:
 class Seen:
     """What is seen before any cause is looked for: the plant re-tuned within its spread, score tests of the library beside it, the fit with
     lost frames, and what all that says of a gap; `beside` is what was fitted already, `checked` are the logs to check on, `decisions` the
-    rules that had a say so far."""
+    rules that had a say so far, `begun` its single effects where these were fitted."""
 
     case: Case
     checked: Case | None
@@ -73,6 +73,7 @@ class Seen:
     detection: Detection
     decisions: tuple[Decision, ...] = ()
     beside: FittedHypothesis | None = None
+    begun: Alone | None = None
 
     def because(self, *further: Decision) -> "Seen":
         """The same with further rules that had a say."""

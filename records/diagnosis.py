@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from records.errors import BadInput
+from records.model_comparison import Candidate, ModelComparison
 from records.quality import Quality, quality_facts
 from records.reasons import Decision, Note
 from records.text import checks
@@ -14,7 +15,8 @@ from records.text.reading import read_json
 
 SCHEMA = "diagnosis/1"
 VERDICTS = ("gap", "no gap", "cannot tell")
-FURTHER = ("error_responses", "partly", "verdict_reason", "decisions", "note_records")  # keys that a file may lack
+# Keys that a file may lack.
+FURTHER = ("error_responses", "partly", "comparison", "verdict_reason", "decisions", "note_records")
 QUALITY = "quality"  # a key beside the record: the colour that pages show, made from it
 SHARE_TOLERANCE = 1e-6  # how far shares may sum from 1
 T = TypeVar("T")
@@ -177,7 +179,8 @@ class Diagnosis:
     `partly` is the probability that of the first hypothesis a part is right and another effect missing: with those of all hypotheses, of
     the unknown effect and of other parameters alone it makes 1. `verdict_reason` names the exit of the engine that was taken, `decisions`
     every rule that had a say on the way there, in order.
-    `notes` are sentences, and `note_records` what each was made from, in the same order.
+    `notes` are sentences, and `note_records` what each was made from, in the same order. `comparison` is what the probabilities follow
+    from, None where no gap was told.
     """
 
     verdict: str
@@ -198,6 +201,7 @@ class Diagnosis:
     verdict_reason: str | None = None
     decisions: tuple[Decision, ...] = ()
     note_records: tuple[Note, ...] = ()
+    comparison: ModelComparison | None = None
 
 
 def diagnosis_text(diagnosis: Diagnosis, quality: Quality | None = None) -> str:
@@ -243,9 +247,15 @@ def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
         verdict_reason=_or_none(checks.text)(content.get("verdict_reason"), f"{where}: verdict_reason"),
         decisions=_list(Decision, content, "decisions", where),
         note_records=_list(Note, content, "note_records", where),
+        comparison=_or_none(comparison_of)(content.get("comparison"), f"{where}: comparison"),
     )
     _check(diagnosis, where)
     return diagnosis
+
+
+def comparison_of(value: Any, where: str) -> ModelComparison:
+    """A comparison from the content of its file; raises BadInput."""
+    return _record(ModelComparison, value, where)
 
 
 def _check(diagnosis: Diagnosis, where: str) -> None:
@@ -331,6 +341,10 @@ def _estimates(value: Any, where: str) -> Mapping[str, Estimate]:
     return {name: _record(Estimate, entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
 
 
+def _candidates(value: Any, where: str) -> tuple[Candidate, ...]:
+    return _list(Candidate, {"candidates": value}, "candidates", where)
+
+
 def _agreements(value: Any, where: str) -> Mapping[str, Agreement]:
     return {name: _record(Agreement, entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
 
@@ -358,6 +372,7 @@ _READ: Mapping[str, Callable[[Any, str], Any]] = {
         (Mapping[str, Any], checks.table),
         (Mapping[str, Estimate], _estimates),
         (Mapping[str, Agreement], _agreements),
+        (tuple[Candidate, ...], _candidates),
         (ClosedLoop | None, _or_none(lambda value, where: _record(ClosedLoop, value, where))),
     )
 }

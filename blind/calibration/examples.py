@@ -1,40 +1,50 @@
-"""What a law of probabilities is learned from: the features that an answer recorded of its first name, and whether that name is right."""
+"""What a law of probabilities is learned from: the comparison that an answer recorded, and which of its candidates are right."""
 
 import json
-import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+
+import numpy as np
 
 from blind.cases.make import salt_of
-from blind.cases.sealed import TRUTH_FILE, open_seal
+from blind.cases.sealed import TRUTH_FILE, Truth, open_seal
 from blind.scoring.judge import means, touches
 from blind.scoring.results import names_of
+from records.diagnosis import comparison_of
 from records.errors import BadInput
+from records.model_comparison import ComparisonLaw, ModelComparison, first_of
 
-RECORD = "calibration_"  # what the rules that recorded the features begin with,
-SHARE = RECORD + "share"  # and the rule that recorded which share of all names the first had
-STATED = "comes_true"  # the rule that recorded the probability
+COMPARISON = "comparison"  # the key of diagnosis.json
 
 
 @dataclass(frozen=True)
 class Example:
-    """One answer: its features, the share that its first name had of all names, whether that name is right, the probability stated of it
-    (None: not on record); whether the name is of several effects, and whether some effect of it is right."""
+    """One answer: its comparison, which of its candidates are right, and of which some effect is; the probability that was stated of the
+    first, and whether that was right (None: nothing was)."""
 
-    features: tuple[float, ...]
-    share: float
-    right: bool
-    stated: float | None
-    several: bool = False
-    partly: bool = False
+    told: ModelComparison
+    right: tuple[bool, ...]
+    touching: tuple[bool, ...]
+    stated: tuple[float, bool] | None = None
+
+    def first(self, law: ComparisonLaw) -> tuple[float, bool]:
+        """The probability of the first by a law, and whether that is right."""
+        shares = law.shares(self.told)[:-1]
+        place = int(np.argmax(shares))
+        return law.explained(self.told) * float(shares[place]), self.right[place]
+
+    def partly(self, law: ComparisonLaw) -> tuple[bool, bool] | None:
+        """Whether the first is of several effects, and whether some of them is right; None where it is right."""
+        shares = law.shares(self.told)
+        first, place = first_of(self.told, shares), int(np.argmax(shares[:-1]))
+        return None if first is None or self.right[place] else (first.further > 0, self.touching[place])
 
 
 @dataclass(frozen=True)
 class Family:
-    """Cases of one kind: seeds that are known to have made them, how many, an example of each whose answer has features."""
+    """Cases of one kind: seeds that are known to have made them, how many, an example of each whose answer compared candidates."""
 
     name: str
     seeds: tuple[int, ...]
@@ -42,44 +52,41 @@ class Family:
     examples: tuple[Example, ...]
 
 
-def family(name: str, folders: Sequence[tuple[Path, Path]], features: Sequence[str]) -> Family:
-    """The family of some (cases, answers); raises BadInput where a seal is broken or no answer has the features."""
-    found, cases, seeds = [], 0, set()
+def family(name: str, folders: Sequence[tuple[Path, Path]]) -> Family:
+    """The family of some (cases, answers); raises BadInput where a seal is broken or no answer compared candidates."""
+    found, cases, seeds = list[Example](), 0, set[int]()
     for folder, answers in folders:
         truths = open_seal(folder)
         cases += len(truths)
         seeds |= _seeds(f"{name} {folder}", folder)
-        for case, truth in truths.items():
-            told = _told(answers / case / "diagnosis.json", features)
-            if told is not None:
-                of, values, share, stated = told
-                names = names_of(of)
-                parts = (len(names) > 1, touches(names, truth))
-                found.append(Example(values, share, means(names, truth), stated, *parts))
+        examples = (_example(answers / case / "diagnosis.json", truth) for case, truth in truths.items())
+        found += [entry for entry in examples if entry is not None]
     if not found:
         where = ", ".join(str(answers) for _, answers in folders)
         got = f"none in the answers to {cases} cases"
         remedy = "answer them again with `twinlaw blind diagnose`, or leave the family out"
-        raise BadInput(f"records {RECORD}* of family {name}", where, got, "at least one answer with them", remedy)
+        raise BadInput(f"`{COMPARISON}` of family {name}", where, got, "at least one answer with candidates", remedy)
     return Family(name, tuple(sorted(seeds)), cases, tuple(found))
 
 
-def _told(path: Path, features: Sequence[str]) -> tuple[str, tuple[float, ...], float, float | None] | None:
-    """The name that an answer's last features speak of, these, its share, and what was stated; None where it has none or cannot be read."""
+def _example(path: Path, truth: Truth) -> Example | None:
+    """What an answer teaches; nothing where it has no candidates or cannot be read."""
     try:
-        records = json.loads(path.read_text(encoding="utf-8")).get("decisions") or []
-        last = {entry["rule"]: entry for entry in records}
-        named = [last[RECORD + name] for name in features]
-        values = tuple(float(entry["value"]) for entry in named)
-        share = float(last[SHARE]["value"])
-        return (str(named[-1]["of"]), values, share, _stated(last)) if all(map(math.isfinite, values)) else None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        told = comparison_of(content[COMPARISON], str(path))
+        named = [names_of(one.effect) for one in told.candidates]
+        right = tuple(means(names, truth) for names in named)
+        touching = tuple(touches(names, truth) for names in named)
+        return Example(told, right, touching, _stated(content, truth)) if named else None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, BadInput):
         return None
 
 
-def _stated(last: Mapping[str, Mapping[str, Any]]) -> float | None:
-    value = last.get(STATED, {}).get("value")
-    return None if value is None else float(value)
+def _stated(content: Mapping[str, object], truth: Truth) -> tuple[float, bool] | None:
+    effects = content.get("effects")
+    if not isinstance(effects, list) or not effects:
+        return None
+    return float(effects[0]["probability"]), means(names_of(effects[0]["effect"]), truth)
 
 
 def _seeds(told: str, folder: Path) -> set[int]:

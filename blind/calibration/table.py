@@ -1,23 +1,22 @@
 """A calibration as text: the JSON file that the diagnosis reads, and a table for a person."""
 
 import json
-from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from blind.calibration.calibrate import Calibration, Quality
 
 
-def law_text(found: Calibration, features: Sequence[str], commit: str) -> str:
-    """The text of calibration.json, numbers with six digits: the same for the same answers."""
-    return json.dumps(_rounded(_content(found, features, commit)), indent=1) + "\n"
+def law_text(found: Calibration, commit: str) -> str:
+    """The text of comparison.json, numbers with six digits: the same for the same answers."""
+    return json.dumps(_rounded(_content(found, commit)), indent=1) + "\n"
 
 
-def _content(found: Calibration, features: Sequence[str], commit: str) -> dict[str, Any]:
+def _content(found: Calibration, commit: str) -> dict[str, Any]:
     families = zip(found.families, found.by_family, strict=True)
     return {
-        "intercept": found.law.intercept,
-        "coefficients": dict(zip(features, found.law.coefficients, strict=True)),
-        "partly": {"single": found.partly[0], "joint": found.partly[1]},
+        "law": dict(vars(found.law)),
         "commit": commit,
         "families": {
             one.name: {"seeds": list(one.seeds), "cases": one.cases, **_plain(left_out)} for one, left_out in families
@@ -30,7 +29,7 @@ def _content(found: Calibration, features: Sequence[str], commit: str) -> dict[s
     }
 
 
-def _plain(told: Quality) -> dict[str, float]:
+def _plain(told: Quality) -> dict[str, float | None]:
     return dict(vars(told))
 
 
@@ -43,13 +42,14 @@ def _rounded(value: Any) -> Any:
 HEADING = ("probabilities of", "answers", "right", "log loss", "calibration error", "honest: median", "95 %")
 
 
-def law_told(found: Calibration, features: Sequence[str]) -> str:
-    """The law in one line."""
-    terms = [f"{value:+.3f} {name}" for value, name in zip(found.law.coefficients, features, strict=True)]
-    single, joint = found.partly
+def law_told(found: Calibration) -> str:
+    """The law in a line or two."""
+    law = found.law
     return (
-        f"log odds of being right = {found.law.intercept:.3f} {' '.join(terms)}; weight decay {found.decay:g}; a wrong name is right in "
-        f"part {single:.2f} of one effect, {joint:.2f} of several"
+        f"scale {np.exp(law.size):.2f} (1 + formed)^{law.power:.3f} nats; a further effect {law.further:.2f}; hold-out {law.hold_out:.2f}\n"
+        f"logit of explained = {law.intercept:.3f} {law.left:+.3f} ln(1 + left) {law.gain:+.3f} ln(1 + gain) {law.favour:+.3f} favour "
+        f"{law.several:+.3f} several; weight decay {found.decay:g}; a wrong name is right in part {law.partly_single:.2f} of one effect, "
+        f"{law.partly_several:.2f} of several"
     )
 
 
@@ -66,4 +66,4 @@ def rows(found: Calibration) -> list[tuple[str, ...]]:
 
 def _row(name: str, q: Quality) -> tuple[str, ...]:
     shown = (q.log_loss, q.calibration_error, q.honest, q.honest_95)
-    return (name, str(q.answers), str(q.right), *(f"{value:.3f}" for value in shown))
+    return (name, str(q.answers), str(q.right), *("-" if value is None else f"{value:.3f}" for value in shown))

@@ -1,14 +1,13 @@
 """Whether a gap matters, and each effect of a name: some thousand rows make any small thing certain, and what changes no prediction is
 nothing to an engineer."""
 
-from collections.abc import Mapping, Sequence, Set
-from dataclasses import replace
+from collections.abc import Sequence, Set
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.weighing import Weighed
+from diagnosis.decide.weighing import Tried, Weighed, weigh
 from diagnosis.decisions import decided
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
@@ -39,46 +38,30 @@ def consequence(
     return (decided("matters", of, gain, decisions.MATTERS, outcome),)
 
 
-def without_idle(
-    logs: FittedLogs, weighed: Weighed, tried: Sequence[FittedHypothesis]
-) -> tuple[Weighed, tuple[Decision, ...]]:
-    """What was weighed, without hypotheses one of whose effects predicts the logs no better than the likeliest of all that were `tried`
-    without it; and the rules.
+def without_idle(logs: FittedLogs, tried: Tried) -> tuple[Tried, tuple[Decision, ...]]:
+    """What was tried, without hypotheses one of whose effects predicts the logs no better than the likeliest of all without it; and the
+    rules.
 
-    What such an effect gains in nats it gains of the noise: it says nothing of what it stands beside, so those without it are compared by
-    their own evidence, the names together as probable as before.
+    What such an effect gains in nats it gains of the noise: it says nothing of what it stands beside.
     """
-    shares, whole = dict(zip(weighed.fitted, weighed.probabilities, strict=True)), sum(weighed.probabilities)
-    asked, rules = set[FittedHypothesis](), list[Decision]()
-    while (entry := _next(shares, asked)) is not None:
+    asked, idle, rules = set[FittedHypothesis](), set[FittedHypothesis](), list[Decision]()
+    while (entry := _next(weigh(tried.without(idle)), asked)) is not None:
         asked.add(entry)
-        fewer = _one_less(entry, tried)
+        fewer = _one_less(entry, tried.named)
         if fewer is None:
             continue
         gain = logs.gain(entry.fit.hypothesis, fewer.fit.hypothesis)
         left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
-        idle = gain < decisions.MATTERS
-        outcome = f"{left} is left out" if idle else f"{left} matters"
+        outcome = f"{left} is left out" if gain < decisions.MATTERS else f"{left} matters"
         rules.append(decided("each_matters", " + ".join(entry.effects), gain, decisions.MATTERS, outcome))
-        if idle:
-            shares = _spread_over(shares, entry, fewer, whole)
-    ranked = sorted(shares, key=lambda entry: -shares[entry])
-    return replace(weighed, fitted=tuple(ranked), probabilities=tuple(shares[one] for one in ranked)), tuple(rules)
+        idle |= {entry} if gain < decisions.MATTERS else set()
+    return tried.without(idle), tuple(rules)
 
 
-def _next(shares: Mapping[FittedHypothesis, float], asked: Set[FittedHypothesis]) -> FittedHypothesis | None:
+def _next(weighed: Weighed, asked: Set[FittedHypothesis]) -> FittedHypothesis | None:
     """The most probable that was not asked yet; None where all others hardly count."""
-    likely = (one for one in shares if one not in asked and shares[one] >= decisions.LEAST_PREFERRED)
-    return max(likely, key=lambda one: shares[one], default=None)
-
-
-def _spread_over(
-    shares: Mapping[FittedHypothesis, float], idle: FittedHypothesis, fewer: FittedHypothesis, whole: float
-) -> dict[FittedHypothesis, float]:
-    """The shares of all others, together as large as all were; `fewer` has it all where none of them counts."""
-    kept = {one: share for one, share in shares.items() if one is not idle}
-    rest = sum(kept.values())
-    return {one: whole / rest * share for one, share in kept.items()} if rest > 0.0 else {fewer: whole}
+    shares = zip(weighed.fitted, weighed.probabilities, strict=True)
+    return next((one for one, p in shares if one not in asked and p >= decisions.LEAST_PREFERRED), None)
 
 
 def _one_less(entry: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> FittedHypothesis | None:

@@ -1,6 +1,6 @@
 """What logs that were not fitted say: how much better what was found predicts them, as one number with its standard error."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -16,7 +16,7 @@ from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
 from diagnosis.validate.prediction import predictions, windows
-from diagnosis.validate.score import DRAWS, Errors, Score, drawn_gains, errors_of, score
+from diagnosis.validate.score import Errors, Score, errors_of, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note
@@ -78,13 +78,6 @@ class Holdout:
             return Score(0.0, 0.0, 0.0)
         return score(self._errors(foreseen), self._errors(self.base.fit.hypothesis))
 
-    def drawn(self, hypothesis: Hypothesis) -> Array:
-        """The gain of `score` over each draw of the logs' windows, the same for all hypotheses."""
-        foreseen = self.foreseen(hypothesis)
-        if self._named(hypothesis) and not self._named(foreseen):
-            return np.zeros(DRAWS)
-        return drawn_gains(self._errors(foreseen), self._errors(self.base.fit.hypothesis))
-
     def _named(self, hypothesis: Hypothesis) -> list[str]:
         """The effects of a hypothesis that `base` lacks, noise apart."""
         return [
@@ -137,39 +130,25 @@ def _outputs(case: Case) -> int:
     )
 
 
-def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:
-    """The names in the order of what both the training logs and these say: what one predicts better counts in nats for each second, as
-    readings within one share their errors. Nothing was fitted to these, so that no form a little off the truth gains there: their nats
-    need no scale (weighing.py).
-
-    So few windows may prefer either by chance: probabilities are the mean over draws of the windows (pseudo-BMA+, Yao, Vehtari, Simpson
-    and Gelman 2018).
-    """
-    chosen = [
-        index for index, p in enumerate(weighed.probabilities[: decisions.PREFERRED]) if p >= decisions.LEAST_PREFERRED
-    ]
-    if len(chosen) < 2:
-        return weighed, ()
-    told = [holdout.score(weighed.fitted[index].fit.hypothesis) for index in chosen]
+def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Mapping[FittedHypothesis, float], tuple[Decision, ...]]:
+    """Nats by which these logs prefer each of the likely names to the likeliest, a reading for each second as those within share their
+    errors; and the rules. Nothing was fitted to these, so that no form a little off the truth gains there."""
+    shares = zip(weighed.fitted, weighed.probabilities, strict=True)
+    likely = [entry for entry, p in shares if p >= decisions.LEAST_PREFERRED][: decisions.PREFERRED]
+    if len(likely) < 2:
+        return {}, ()
+    told = {entry: holdout.score(entry.fit.hypothesis).gain for entry in likely}
     seconds = sum(len(windows(flight.log.t_s)) for flight in holdout.case.flights)
-    shares = np.array([weighed.probabilities[index] for index in chosen])
-    gains = np.stack([holdout.drawn(weighed.fitted[index].fit.hypothesis) for index in chosen])
-    logs = np.log(shares)[:, None] + seconds * gains
-    drawn = np.exp(logs - logs.max(axis=0))
-    factors = np.ones(len(weighed.fitted))
-    factors[chosen] = shares.sum() * np.mean(drawn / drawn.sum(axis=0), axis=1) / shares
+    first = told[likely[0]]
     rules = tuple(
-        held_against(
-            "hold_out_prefers",
-            " + ".join(weighed.fitted[index].effects),
-            entry.gain,
-            told[0].gain,
-            NATS,
-            "likelier" if factors[index] > factors[chosen[0]] else "less likely",
-        )
-        for index, entry in zip(chosen[1:], told[1:], strict=True)
+        held_against("hold_out_prefers", " + ".join(entry.effects), gain, first, NATS, _than(gain, first))
+        for entry, gain in list(told.items())[1:]
     )
-    return weighed.with_names(factors), rules
+    return {entry: seconds * (gain - first) for entry, gain in told.items()}, rules
+
+
+def _than(gain: float, first: float) -> str:
+    return "likelier" if gain > first else "less likely"
 
 
 def is_surely_better(told: Score) -> bool:

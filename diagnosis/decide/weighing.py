@@ -1,29 +1,31 @@
-"""From evidence to probabilities that mean something: tempered by how far the forms of the library may be from the truth."""
+"""From evidence to probabilities that come true: hypotheses compared by a law that was learned (records/model_comparison.py)."""
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+import json
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
-from diagnosis import decisions
 from diagnosis.decide.prior import prior_odds
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
+from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.search.exchange import is_twin
+from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, law_of
 from records.reasons import Decision
-from sim.effect import Effect
 
-Array = NDArray[np.float64]
-RANKED = 12
+RANKED = 12  # hypotheses that are told of
+ALIKE_SCALES = 3.0  # of the scale, that hypotheses which the logs hardly tell apart may be from one another
 
 
 @dataclass(frozen=True, eq=False)
 class Weighed:
     """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; that of
-    parameters beyond their spread; the scale in nats on which hypotheses are compared; and the probability that of the first some effects
-    are right and others not."""
+    parameters beyond their spread; the scale in nats on which hypotheses are compared; that of the first some effects are right and others
+    not; and the comparison that all these follow from."""
 
     fitted: tuple[FittedHypothesis, ...]
     probabilities: tuple[float, ...]
@@ -32,22 +34,12 @@ class Weighed:
     scale: float
     decisions: tuple[Decision, ...] = ()
     partly: float = 0.0
+    comparison: ModelComparison | None = None
 
     @property
     def nameless(self) -> bool:
         """Whether nothing that has a name is as probable as an unknown effect."""
         return self.unknown > max(self.retune, self.partly + max(self.probabilities, default=0.0))
-
-    def with_names(self, factors: Array) -> "Weighed":
-        """The same with the probability of each name times its factor (names,), all names together as probable as before."""
-        shares = np.array(self.probabilities) * factors
-        shares *= sum(self.probabilities) / shares.sum()
-        order = np.argsort(-shares, kind="stable").tolist()
-        return replace(
-            self,
-            fitted=tuple(self.fitted[index] for index in order),
-            probabilities=tuple(float(shares[index]) for index in order),
-        )
 
     def with_unknown(self, share: float) -> "Weighed":
         """The same with an unknown effect of probability `share`, all else in its old proportions; itself where nothing else is left."""
@@ -64,89 +56,93 @@ class Weighed:
         )
 
 
-def weigh(
-    fitted: Sequence[FittedHypothesis],
-    nominal: FittedHypothesis,
-    effects: Mapping[str, Effect],
-    left: float,
-    retune: float | None = None,
-    frictionless: Collection[str] = (),
-    steps: Mapping[str, float] = {},
-) -> Weighed:
-    """Probabilities of hypotheses given that there is a gap; `left` nats are what forms still gain beside the best of them, `retune`
-    is the evidence for parameters beyond their spread, `frictionless` and `steps` as in prior.py."""
-    named = [entry for entry in fitted if entry.effects]
-    if not named:
-        return _nameless(nominal, left, retune)
-    first = max(named, key=lambda entry: entry.evidence)
-    best = first.evidence
-    whole = max(best - nominal.evidence, 0.0)
-    formed = max(best - _read_off(named, first, nominal, effects).evidence, 0.0)
-    scale = (
-        decisions.ALIKE
-        + decisions.OFF_FORM * formed**decisions.OFF_POWER
-        + decisions.OFF_SHARE * min(formed, decisions.FARTHEST_GAIN)
-    )
-    tempered = np.array(
-        [(entry.evidence - best) / scale - decisions.FURTHER * (len(entry.effects) - 1) for entry in named]
-    )
-    prior_chi_squared = np.array([_beyond_spread(entry) for entry in named])
-    tempered -= prior_chi_squared - prior_chi_squared.min()
-    scores = tempered + [prior_odds(entry, effects, frictionless, steps) for entry in named]
-    expected = decisions.LEFT_NATS + decisions.LEFT_SHARE * whole
-    # Something unknown stands beside the best name, so it pays for all that this pays for but how rare it is.
-    unknown = decisions.LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - decisions.UNKNOWN + tempered.max()
-    other = -np.inf if retune is None else (retune - decisions.RETUNE_COST - best) / scale
-    weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
-    weights /= weights.sum()
-    order = np.argsort(-weights[:-2], kind="stable")[:RANKED]
-    of = " + ".join(first.effects)
-    rules = (
-        held_against("forms_left", of, left, expected, "nats", "unknown likelier" if left > expected else "explained"),
-        held_against(
-            "told_apart", of, best - nominal.evidence, scale, "nats", _told_apart(best - nominal.evidence, scale)
-        ),
-    )
-    chosen = tuple(named[index] for index in order)
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """All that may explain a gap: hypotheses with effects, the plant without any, what forms still gain beside the best of them in nats,
+    and the evidence of parameters beyond their spread alone (None: there are none)."""
+
+    named: tuple[FittedHypothesis, ...]
+    nominal: FittedHypothesis
+    library: EffectLibrary
+    left_nats: float
+    retune: float | None = None
+
+    def without(self, dropped: Collection[FittedHypothesis]) -> "Tried":
+        """The same without some hypotheses."""
+        return replace(self, named=tuple(entry for entry in self.named if entry not in dropped))
+
+
+@dataclass(frozen=True)
+class Foretold:
+    """What logs that were not fitted say: nats by which they prefer each hypothesis that they were asked of to the likeliest without them,
+    and what speaks for the first (-1 to 1; None: nothing was asked)."""
+
+    nats: Mapping[FittedHypothesis, float] = field(default_factory=dict)
+    favour: float | None = None
+
+
+@cache
+def learned() -> ComparisonLaw:
+    """The law of the file beside this one, which `twinlaw blind calibrate` writes."""
+    return law_of(json.loads(files("diagnosis.decide").joinpath("comparison.json").read_text(encoding="utf-8"))["law"])
+
+
+def weigh(tried: Tried, foretold: Foretold | None = None, law: ComparisonLaw | None = None) -> Weighed:
+    """Probabilities of all that was tried, given that there is a gap."""
+    known, learnt = foretold or Foretold(), learned() if law is None else law
+    told = _comparison(tried, known)
+    shares, explained = learnt.shares(told), learnt.explained(told)
+    order = np.argsort(-shares[:-1], kind="stable")[:RANKED].tolist()
+    first = told.candidates[order[0]] if order else None
+    partly = (1.0 - explained) * learnt.partly(first)
+    scale = learnt.scale_nats(told.formed_nats)
     return Weighed(
-        chosen,
-        tuple(float(weights[index]) for index in order),
-        float(weights[-1]),
-        float(weights[-2]),
+        tuple(tried.named[index] for index in order),
+        tuple(float(explained * shares[index]) for index in order),
+        1.0 - explained - partly,
+        float(explained * shares[-1]),
         scale,
-        rules,
+        _rules(told, first, scale, explained),
+        partly,
+        told,
     )
 
 
-def _told_apart(gain: float, scale: float) -> str:
-    return "told from the plant alone" if gain > scale else "alike to the plant alone"
+def _comparison(tried: Tried, foretold: Foretold) -> ModelComparison:
+    nominal, effects = tried.nominal, tried.library.effects
+    first = max(tried.named, key=lambda entry: entry.evidence, default=nominal)
+    best = first.evidence if tried.retune is None else max(first.evidence, tried.retune)
+    return ModelComparison(
+        candidates=tuple(
+            Candidate(
+                " + ".join(entry.effects),
+                entry.evidence - nominal.evidence,
+                prior_odds(entry, effects, tried.library.frictionless, tried.library.steps),
+                foretold.nats.get(entry, 0.0),
+            )
+            for entry in tried.named
+        ),
+        gain_nats=max(best - nominal.evidence, 0.0),
+        formed_nats=max(first.evidence - _read_off(tried, first).evidence, 0.0),
+        left_nats=tried.left_nats,
+        favour=foretold.favour,
+        parameters_nats=None if tried.retune is None else tried.retune - nominal.evidence,
+    )
 
 
-def _read_off(
-    named: Sequence[FittedHypothesis],
-    first: FittedHypothesis,
-    nominal: FittedHypothesis,
-    effects: Mapping[str, Effect],
-) -> FittedHypothesis:
+def _read_off(tried: Tried, first: FittedHypothesis) -> FittedHypothesis:
     """That of `first` which is read off the logs, a sensor's steps, where it was tried alone: no form of it can be a little off."""
-    exact = {name for name in first.effects if effects[name].shown_in_readings}
-    return next((entry for entry in named if set(entry.effects) == exact), nominal)
+    exact = {name for name in first.effects if tried.library.effects[name].shown_in_readings}
+    return next((entry for entry in tried.named if set(entry.effects) == exact), tried.nominal)
 
 
-def _nameless(nominal: FittedHypothesis, left: float, retune: float | None) -> Weighed:
-    """Where no effect was worth a fit: other parameters alone, or what no candidate explains."""
-    if retune is None:
-        return Weighed((), (), 1.0, 0.0, decisions.ALIKE)
-    other = (retune - decisions.RETUNE_COST - nominal.evidence) / decisions.ALIKE
-    unknown = decisions.LEFT_POWER * float(np.log(max(left, 1.0) / decisions.LEFT_NATS)) - decisions.UNKNOWN
-    alone = float(1.0 / (1.0 + np.exp(np.clip(unknown - other, -500.0, 500.0))))
-    return Weighed((), (), 1.0 - alone, alone, decisions.ALIKE)
-
-
-def _beyond_spread(entry: FittedHypothesis) -> float:
-    """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
-    beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - decisions.FREE_SPREAD, 0.0)
-    return 0.5 * float(beyond @ beyond)
+def _rules(told: ModelComparison, first: Candidate | None, scale: float, explained: float) -> tuple[Decision, ...]:
+    of = "nothing" if first is None else first.effect
+    return (
+        held_against("told_apart", of, told.gain_nats, scale, "nats", "apart" if told.gain_nats > scale else "alike"),
+        held_against("forms_left", of, told.left_nats, told.gain_nats, "nats", "counts"),
+        held_against("explained", of, explained, 0.5, "probability", "likelier" if explained > 0.5 else "less likely"),
+    )
 
 
 def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
@@ -156,7 +152,7 @@ def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
         for entry in weighed.fitted
         if entry is not first
         and len(entry.effects) == len(first.effects)
-        and abs(entry.evidence - first.evidence) < 3.0 * weighed.scale
+        and abs(entry.evidence - first.evidence) < ALIKE_SCALES * weighed.scale
     ]
     return sorted(near, key=lambda entry: abs(entry.evidence - first.evidence))[:6]
 

@@ -41,17 +41,12 @@ def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tupl
     return Draught(FittedHypothesis((name,), retuned.fit, retuned.evidence), quiet), (rule,)
 
 
-def beyond_noise(case: Case, hypothesis: Hypothesis) -> list[str]:
-    """The torques that come and go and are larger than noise is: part of the gap."""
-    return [name for name, share in gust_shares(case, hypothesis).items() if share > decisions.USUAL_GUST]
-
-
 def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
     """Hypotheses with the noise with a memory that the logs tell of beside their names, where that is likelier; none where beside the best
     of them it takes what is no noise.
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
-    also take what a name or a parameter explains: it is larger than noise is then, or a second of these logs is predicted worse for it.
+    also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
     Where it does so beside the best, evidence under it is not to be compared with evidence without.
     """
     best = max(fitted, key=lambda entry: entry.evidence, default=None)
@@ -70,8 +65,6 @@ def _with_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | Non
     told = as_fitted(case, found)
     if told.evidence <= fitted.evidence:
         return fitted
-    if beyond_noise(case, told.fit.hypothesis):
-        return None
     gain = FittedLogs(case).gain(told.fit.hypothesis, fitted.fit.hypothesis)
     return told if gain >= -decisions.MATTERS else None
 

@@ -11,6 +11,8 @@ Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, sect
 
     P_x = 2^(1/2) q^(1/4) R^(3/4), P_xv = q^(1/2) R^(1/2), P_v = 2^(1/2) q^(3/4) R^(1/4)
     attainable(tau)^2 = r + P_x + 2 P_xv tau + P_v tau^2 + q tau^3 / 3
+
+of an axis; of a measured state that is none, r + (q R)^(1/2) + q tau.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -86,12 +88,6 @@ def score(model: Errors, other: Errors) -> Score:
     return Score(float(gains[0]), float(np.std(gains[1:])), float(_total(own - best)[0]))
 
 
-def drawn_gains(model: Errors, other: Errors) -> Array:
-    """The gain of `score` over each draw of windows (DRAWS,), the same windows for every model of the same logs."""
-    known, weights = _drawn(model, other)
-    return _gains(model, other, known, weights)[1:] if known.any() else np.zeros(DRAWS)
-
-
 def _drawn(model: Errors, other: Errors) -> tuple[NDArray[np.bool_], Array]:
     """What both models' errors are known of, and how often each window counts: once, then as drawn with replacement."""
     known = np.isfinite(model.squares) & np.isfinite(other.squares)
@@ -141,6 +137,7 @@ def _attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> Arra
     noise = {
         str(axis.position): 10.0 ** (2.0 * q) for axis, q in zip(model.axes, hypothesis.process_noise, strict=True)
     }
+    states = {state: 10.0 ** (2.0 * level) for state, level in hypothesis.state_noise.items()}
     coarse = _steps(case, hypothesis)
     found = np.empty((len(HORIZONS_S), len(model.outputs)))
     for place, (name, expression) in enumerate(model.outputs.items()):
@@ -151,6 +148,7 @@ def _attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> Arra
         q = noise.get(str(expression), 0.0)
         R = r * flight.step_s
         r += 0.0 if errors is None else errors.sd**2
+        r += np.sqrt(drift * R) + drift * tau if (drift := states.get(str(expression), 0.0)) > 0.0 else 0.0
         P_x, P_xv, P_v = np.sqrt(2.0) * q**0.25 * R**0.75, np.sqrt(q * R), np.sqrt(2.0) * q**0.75 * R**0.25
         found[:, place] = r + P_x + 2.0 * P_xv * tau + P_v * tau**2 + q * tau**3 / 3.0
     return found

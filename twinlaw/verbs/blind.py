@@ -20,7 +20,6 @@ from typing import Any
 import blind
 from blind.calibration.table import HEADING, law_text, law_told, rows
 from diagnosis.baselines import BASELINES
-from diagnosis.decide.calibration import FEATURES
 from jobs.job import Done
 from records.errors import BadInput
 from records.files import demand_writable, write_atomic
@@ -168,11 +167,11 @@ def _calibrate(chosen: argparse.Namespace) -> int:
     folders: dict[str, list[tuple[Path, Path]]] = {}
     for name, cases, results in chosen.family:
         folders.setdefault(str(name), []).append((cases, results))
-    found = blind.calibrate([blind.family(name, paths, FEATURES) for name, paths in folders.items()])
-    text = law_text(found, FEATURES, chosen.commit)
+    found = blind.calibrate([blind.family(name, paths) for name, paths in folders.items()])
+    text = law_text(found, chosen.commit)
     write_atomic(chosen.out, text)
     table = console.table(rows(found), HEADING)
-    print(text.rstrip() if chosen.json else f"{table}\n\n{law_told(found, FEATURES)}\n{chosen.out}")
+    print(text.rstrip() if chosen.json else f"{table}\n\n{law_told(found)}\n{chosen.out}")
     return 0
 
 

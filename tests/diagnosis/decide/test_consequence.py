@@ -1,10 +1,12 @@
 """A gap matters by what its explanation predicts, not by how certain many rows make it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis.decide.consequence import consequence, without_idle
-from diagnosis.decide.weighing import Weighed
+from diagnosis.decide.weighing import Tried, Weighed
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
@@ -60,30 +62,16 @@ def test_an_effect_that_predicts_no_better_is_left_out_and_one_that_does_stays()
     rub, idle = {"arm.coulomb": {"b": 4e-4}}, {"theta_sensor.scale": {"scale": 1.001}}
     case = arm_case(arm_log({**rub, **idle}, seed=76))
     both, alone, other = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle))
-    weighed = Weighed((both, alone), (0.7, 0.2), 0.1, 0.0, 10.0)
-    found, (rule,) = without_idle(FittedLogs(case), weighed, [alone, other, both])
-    assert [entry.effects for entry in found.fitted] == [("arm.coulomb",)]
-    assert found.probabilities == pytest.approx((0.9,))
-    assert found.unknown == 0.1
+    tried = Tried((both, alone), settled(case, {}), case.library, 5.0)
+    logs = FittedLogs(case)
+    found, (rule,) = without_idle(logs, tried)
+    assert [entry.effects for entry in found.named] == [("arm.coulomb",)]
     assert rule.value is not None
     assert rule.value < 0.05
-    kept, rules = without_idle(
-        FittedLogs(case), weighed, [other, both]
-    )  # nothing else was tried with one effect less: the friction would be missed
-    assert kept.fitted == weighed.fitted
+    # Where nothing else was tried with one effect less, the friction would be missed.
+    kept, rules = without_idle(logs, replace(tried, named=(other, both)))
+    assert kept.named == (other, both)
     assert [one.outcome for one in rules] == ["arm.coulomb matters"]
-
-
-def test_what_is_left_is_compared_by_its_own_evidence() -> None:
-    # Truth: as above. What the idle scale gains of the noise is no share of the friction that it stood beside.
-    rub, idle = {"arm.coulomb": {"b": 4e-4}}, {"theta_sensor.scale": {"scale": 1.001}}
-    case = arm_case(arm_log({**rub, **idle}, seed=76))
-    both, alone, other = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle))
-    found, _ = without_idle(
-        FittedLogs(case), Weighed((both, other, alone), (0.6, 0.2, 0.1), 0.1, 0.0, 10.0), [alone, other, both]
-    )
-    assert [entry.effects for entry in found.fitted] == [("theta_sensor.scale",), ("arm.coulomb",)]
-    assert found.probabilities == pytest.approx((0.6, 0.3))
 
 
 @pytest.mark.parametrize("moved", [False, True])

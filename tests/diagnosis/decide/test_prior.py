@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from blind.calibration.fit import UNLEARNED
 from diagnosis.decide import prior
-from diagnosis.decide.weighing import Weighed, weigh
+from diagnosis.decide.weighing import Tried, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
@@ -15,10 +16,12 @@ from diagnosis.diagnose import borne_out, confirmed_by
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, Free
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Seen
 from diagnosis.search.beam import Search
 from sim.added_effects import every_effect
 from sim.effect import EffectParameter
+from tests.plants import bound
 
 EFFECTS = {effect.name: effect for effect in every_effect()}
 
@@ -137,5 +140,5 @@ def test_what_a_sensor_s_steps_gain_makes_what_is_beside_them_no_less_sure(first
     # 40000 nats is a form, and what it lacks of the truth may gain as much.
     one = fitted(40000.0, **{first.replace(".", "__"): EFFECTS[first].absent})
     both = fitted(40150.0, **{first.replace(".", "__"): EFFECTS[first].absent, "elevation__cable_spring": {"k": 0.003}})
-    found = weigh([both, one], fitted(), EFFECTS, left=10.0)
+    found = weigh(Tried((both, one), fitted(), effect_library(bound("ce150")), 10.0), law=UNLEARNED)
     assert (found.fitted[0] is both) is second_counts

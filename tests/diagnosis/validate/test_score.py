@@ -5,7 +5,7 @@ import pytest
 
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.prediction import predictions
-from diagnosis.validate.score import HORIZONS_S, Errors, drawn_gains, errors_of, score
+from diagnosis.validate.score import HORIZONS_S, Errors, errors_of, score
 from tests.diagnosis.arm import arm_case, arm_log, plain_linearisation
 
 WINDOWS, OUTPUTS = 40, 2
@@ -35,19 +35,6 @@ def test_its_standard_error_falls_with_the_windows() -> None:
         return score(own, other).sd
 
     assert sd(400) == pytest.approx(0.5 * sd(100), rel=0.4)
-
-
-def test_gains_over_drawn_windows_scatter_about_the_gain_and_are_of_the_same_windows_for_every_model() -> None:
-    rng = np.random.default_rng(3)
-    other = errors(1.0)
-    own = Errors(other.squares * rng.lognormal(0.0, 1.0, other.squares.shape), other.grid, other.attainable)
-    drawn, told = drawn_gains(own, other), score(own, other)
-    assert np.mean(drawn) == pytest.approx(told.gain, abs=0.5 * told.sd)
-    assert np.std(drawn) == pytest.approx(told.sd)
-    twice = Errors(
-        4.0 * own.squares, own.grid, own.attainable
-    )  # as far off twice in every window: no draw says otherwise
-    assert np.allclose(drawn_gains(own, other) - drawn_gains(twice, other), np.log(2.0))
 
 
 def test_readings_that_lie_on_a_coarser_grid_are_likelier_by_its_log() -> None:

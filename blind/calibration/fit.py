@@ -1,0 +1,107 @@
+"""The law of probabilities (records/model_comparison.py) fitted to examples: the most probable one, beforehand normal in each number.
+
+Its two halves are apart: which of what explains is right, of answers that list it; and whether any of it is, of all.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.special import expit
+
+from blind.calibration.examples import Example
+from records.model_comparison import ComparisonLaw, features, first_of
+
+Array = NDArray[np.float64]
+
+# What is believed of the first half before any answer, (mean, standard deviation): that differences of some ten nats count at first, and of
+# some fifty where forms explain ten thousand; that a further effect costs what any wrong effect gains by chance; that nats which nothing
+# was fitted to count whole.
+SHARES = {"size": (1.2, 0.7), "power": (0.28, 0.1), "further": (2.5, 1.5), "hold_out": (1.0, 0.5)}
+INTERCEPT_DECAY = 0.01  # a standard deviation of ten logits, which only keeps it finite where all answers are right
+SAME = 1e-9  # a feature with a smaller standard deviation does not vary
+SLOPE = 1e-7  # nats per unit, at which the second half is at its end
+ENDED = {
+    "xatol": 1e-6,
+    "fatol": 1e-9,
+    "maxiter": 4000,
+    "maxfev": 8000,
+}  # the first half, of four numbers, without slopes
+LEAST = 1e-12  # no share counts as less
+
+UNLEARNED = ComparisonLaw(*(mean for mean, _ in SHARES.values()), *[0.0] * 5, *[0.5] * 2)
+
+
+def fit(examples: Sequence[Example], decay: float) -> ComparisonLaw:
+    """The most probable law; `decay` is the inverse variance of each coefficient per standard deviation of its feature."""
+    law = _with_shares(UNLEARNED, [entry for entry in examples if any(entry.right)])
+    law = _with_explained(law, examples, decay)
+    return replace(law, partly_single=partly(law, examples, False), partly_several=partly(law, examples, True))
+
+
+def partly(law: ComparisonLaw, examples: Sequence[Example], several: bool) -> float:
+    """How often a wrong name of one effect, or of several, is right in part: Laplace's rule of succession, (k + 1) / (n + 2)."""
+    told = [entry.partly(law) for entry in examples]
+    wrong = [touching for is_several, touching in filter(None, told) if is_several is several]
+    return (sum(wrong) + 1) / (len(wrong) + 2)
+
+
+def log_loss(law: ComparisonLaw, examples: Sequence[Example]) -> float:
+    """Nats an answer: -ln of the probability of what is right in it, or of its being something else."""
+    return float(np.mean([-np.log(max(_right(law, entry), LEAST)) for entry in examples]))
+
+
+def _right(law: ComparisonLaw, entry: Example) -> float:
+    explained = law.explained(entry.told)
+    return explained * _share(law, entry) if any(entry.right) else 1.0 - explained
+
+
+def _share(law: ComparisonLaw, entry: Example) -> float:
+    return float(law.shares(entry.told)[:-1][list(entry.right)].sum())
+
+
+def _with_shares(law: ComparisonLaw, listed: Sequence[Example]) -> ComparisonLaw:
+    mean, sd = (np.array(values) for values in zip(*SHARES.values(), strict=True))
+
+    def of(numbers: Array) -> ComparisonLaw:
+        return replace(law, **dict(zip(SHARES, numbers.tolist(), strict=True)))
+
+    def loss(numbers: Array) -> float:
+        missed = sum(np.log(max(_share(of(numbers), entry), LEAST)) for entry in listed)
+        return float(0.5 * np.sum(((numbers - mean) / sd) ** 2) - missed)
+
+    return of(_least(loss, mean))
+
+
+def _least(loss: Callable[[Array], float], start: Array) -> Array:
+    return np.asarray(minimize(loss, start, method="Nelder-Mead", options=ENDED).x)
+
+
+def _with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: float) -> ComparisonLaw:
+    """So the fit is defined with few examples and forgets units; a feature that does not vary has coefficient 0."""
+    found = np.array([features(entry.told, first_of(entry.told, law.shares(entry.told))) for entry in examples])
+    right = np.array([any(entry.right) for entry in examples], float)
+    mean, sd = found.mean(axis=0), found.std(axis=0)
+    varies = sd > SAME
+    told = np.column_stack([np.ones(len(right)), (found - mean)[:, varies] / sd[varies]])
+    numbers = _logistic(told, right, np.array([INTERCEPT_DECAY, *[decay] * int(varies.sum())]))
+    coefficients = np.zeros(len(sd))
+    coefficients[varies] = numbers[1:] / sd[varies]
+    left, gain, favour, several = coefficients.tolist()
+    intercept = float(numbers[0] - coefficients @ mean)
+    return replace(law, intercept=intercept, left=left, gain=gain, favour=favour, several=several)
+
+
+def _logistic(told: Array, right: Array, decay: Array) -> Array:
+    """Where log loss plus decay is least, in nats."""
+
+    def loss(w: Array) -> float:
+        z = told @ w
+        return float(np.sum(np.logaddexp(0.0, z) - right * z) + 0.5 * decay @ w**2)
+
+    def slope(w: Array) -> Array:
+        return np.asarray(told.T @ (expit(told @ w) - right) + decay * w)
+
+    return np.asarray(minimize(loss, np.zeros(told.shape[1]), jac=slope, method="BFGS", options={"gtol": SLOPE}).x)

@@ -1,0 +1,119 @@
+"""From what logs say of several explanations of a gap to how probable each is, by a law whose numbers are learned from sealed answers.
+
+(1)  scale        = e^size (1 + formed)^power, nats that forms a little off the truth may cost: more where more is explained by them
+(2)  ln weight_i  = evidence_i / scale + prior_i - further n_i + hold_out h_i, n_i effects beside one, h_i nats on logs not fitted
+(3)  ln weight_p  = evidence_p / scale, of the plant's own parameters beyond their spread and no effect
+(4)  P(explained) = 1 / (1 + e^-z), z = intercept + left ln(1 + left) + gain ln(1 + gain) + favour f + several (n > 0)
+(5)  P_i          = P(explained) weight_i / sum of weights
+
+The rest is an effect's that no candidate explains; of that a share is right in part, as so many wrong names of one effect or several were.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An explanation by one effect or several ("a.b + c.d"): nats of its evidence beyond the plant alone, log odds before the data, and
+    nats by which logs that were not fitted prefer it to the likeliest (0: not asked)."""
+
+    effect: str
+    evidence_nats: float
+    prior_nats: float
+    hold_out_nats: float = 0.0
+
+    @property
+    def further(self) -> int:
+        """How many effects it has beside one."""
+        return self.effect.count(" + ")
+
+
+@dataclass(frozen=True)
+class ModelComparison:
+    """What is known of a gap's explanations: nats that the best of them gains (`gain_nats`), of these what rests on forms of effects
+    (`formed_nats`), what free forms still gain beside it (`left_nats`), what logs that were not fitted say of the first (-1 to 1; None
+    without such logs or a first), and nats of parameters beyond their spread alone (None: there are none)."""
+
+    candidates: tuple[Candidate, ...]
+    gain_nats: float
+    formed_nats: float
+    left_nats: float
+    favour: float | None = None
+    parameters_nats: float | None = None
+
+
+@dataclass(frozen=True)
+class ComparisonLaw:
+    """The numbers of (1) to (4), and how often a wrong name is right in part, of a single effect and of several."""
+
+    size: float
+    power: float
+    further: float
+    hold_out: float
+    intercept: float
+    left: float
+    gain: float
+    favour: float
+    several: float
+    partly_single: float
+    partly_several: float
+
+    def scale_nats(self, formed_nats: float) -> float:
+        """(1)"""
+        return float(np.exp(self.size) * (1.0 + formed_nats) ** self.power)
+
+    def shares(self, told: ModelComparison) -> Array:
+        """Of each candidate, then of parameters alone, of all that explains: weights of (2) and (3) over their sum (candidates + 1,)."""
+        scale = self.scale_nats(told.formed_nats)
+        logs = [
+            one.evidence_nats / scale + one.prior_nats - self.further * one.further + self.hold_out * one.hold_out_nats
+            for one in told.candidates
+        ]
+        alone = -np.inf if told.parameters_nats is None else told.parameters_nats / scale
+        found = np.array([*logs, alone])
+        if not np.isfinite(found).any():
+            return np.zeros(len(found))
+        weights = np.exp(found - found.max())
+        return np.asarray(weights / weights.sum())
+
+    def explained(self, told: ModelComparison) -> float:
+        """(4), of the first of the candidates by (2); 0 where nothing explains."""
+        shares = self.shares(told)
+        if not shares.any():
+            return 0.0
+        z = self.intercept + float(np.dot(self.coefficients, features(told, first_of(told, shares))))
+        return float(1.0 / (1.0 + np.exp(-z)))
+
+    @property
+    def coefficients(self) -> tuple[float, ...]:
+        """Those of (4), in the order of `features`."""
+        return (self.left, self.gain, self.favour, self.several)
+
+    def partly(self, first: Candidate | None) -> float:
+        """How often a part of a wrong name is right."""
+        if first is None:
+            return 0.0
+        return self.partly_several if first.further else self.partly_single
+
+
+def first_of(told: ModelComparison, shares: Array) -> Candidate | None:
+    """The candidate with the largest share; None where there is none."""
+    return told.candidates[int(np.argmax(shares[:-1]))] if told.candidates else None
+
+
+def features(told: ModelComparison, first: Candidate | None) -> tuple[float, ...]:
+    """What (4) is a function of."""
+    several = float(first is not None and first.further > 0)
+    return (float(np.log1p(told.left_nats)), float(np.log1p(told.gain_nats)), told.favour or 0.0, several)
+
+
+def law_of(numbers: Mapping[str, Any]) -> ComparisonLaw:
+    """The law with these numbers."""
+    return ComparisonLaw(**{field.name: float(numbers[field.name]) for field in fields(ComparisonLaw)})

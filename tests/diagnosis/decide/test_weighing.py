@@ -1,0 +1,79 @@
+"""Hypotheses become probabilities by the learned law: of what is explained each has a share, an unknown effect has the rest."""
+
+from dataclasses import fields, replace
+
+import pytest
+
+from diagnosis.decide.weighing import Foretold, Tried, alike, learned, weigh
+from diagnosis.fit.evidence import FittedHypothesis
+from diagnosis.library.effect_library import effect_library
+from records.model_comparison import ComparisonLaw
+from tests.diagnosis.arm import arm, plain_linearisation
+
+LAW = ComparisonLaw(1.2, 0.28, 2.5, 1.0, 0.0, -0.5, 0.4, 3.0, -0.5, 0.1, 0.8)
+
+
+def fitted(evidence: float, **effects: dict[str, float]) -> FittedHypothesis:
+    """The arm as stated with effects, of this evidence."""
+    fit = plain_linearisation().fit
+    named = {name.replace("__", "."): values for name, values in effects.items()}
+    return FittedHypothesis(tuple(named), replace(fit, hypothesis=fit.hypothesis.with_effects(named)), evidence)
+
+
+RUB = fitted(400.0, arm__coulomb={"b": 4e-4})
+DRAG = fitted(390.0, arm__quadratic_drag={"c": 1e-6})
+BOTH = fitted(402.0, arm__coulomb={"b": 4e-4}, arm__quadratic_drag={"c": 1e-6})
+
+
+def tried(*named: FittedHypothesis, left: float = 5.0, retune: float | None = None) -> Tried:
+    return Tried(named, fitted(0.0), effect_library(arm()), left, retune)
+
+
+def test_all_probabilities_make_one_and_follow_the_comparison_that_is_kept() -> None:
+    found = weigh(tried(DRAG, RUB, BOTH, retune=350.0), Foretold({DRAG: -3.0}, 0.4), LAW)
+    assert found.comparison is not None
+    assert sum((*found.probabilities, found.retune, found.unknown, found.partly)) == pytest.approx(1.0)
+    assert found.fitted[0] is RUB
+    shares, explained = LAW.shares(found.comparison), LAW.explained(found.comparison)
+    assert found.probabilities[0] == pytest.approx(explained * shares[1])
+    assert found.retune == pytest.approx(explained * shares[3])
+    assert found.partly == pytest.approx(0.1 * (1.0 - explained))
+    assert found.scale == LAW.scale_nats(402.0)
+    assert [one.hold_out_nats for one in found.comparison.candidates] == [-3.0, 0.0, 0.0]
+
+
+def test_what_the_hold_out_refutes_is_less_likely_and_an_unknown_effect_likelier() -> None:
+    for_it, against = (weigh(tried(RUB), Foretold(favour=favour), LAW) for favour in (0.9, -0.9))
+    assert for_it.probabilities[0] > 0.9 > 0.4 > against.probabilities[0]
+    assert against.nameless
+    assert not for_it.nameless
+
+
+def test_what_forms_leave_makes_an_unknown_effect_likelier() -> None:
+    little, much = (weigh(tried(RUB, left=left), None, LAW).unknown for left in (3.0, 3000.0))
+    assert much > little + 0.3
+
+
+def test_parameters_alone_are_told_as_that_and_what_they_do_not_explain_is_unknown() -> None:
+    explained, not_there = weigh(tried(left=5.0, retune=160.0), None, LAW), weigh(tried(left=5.0), None, LAW)
+    assert explained.retune > 0.7
+    assert explained.fitted == not_there.fitted == ()
+    assert (not_there.unknown, not_there.retune) == (1.0, 0.0)
+
+
+def test_names_that_the_logs_hardly_tell_apart_are_alike() -> None:
+    found = weigh(tried(RUB, DRAG, BOTH), None, LAW)
+    assert alike(found, RUB) == [DRAG]
+    assert alike(weigh(tried(RUB, replace(DRAG, evidence=100.0)), None, LAW), RUB) == []
+
+
+def test_the_learned_law_says_what_such_a_law_must() -> None:
+    """Truth: more left is likelier unknown, a hold-out counts for what it favours, further effects cost, a part of several is
+    oftener right; at most ten numbers beside how often parts are."""
+    law = learned()
+    assert law.left <= 0.0 <= law.favour
+    assert law.gain >= 0.0
+    assert law.further > 0.0
+    assert law.hold_out > 0.0
+    assert 0.0 < law.partly_single < law.partly_several < 1.0
+    assert len(fields(law)) <= 12

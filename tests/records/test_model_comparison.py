@@ -1,0 +1,63 @@
+"""The law from evidence to probabilities: its equations by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, features, first_of
+
+LAW = ComparisonLaw(
+    size=np.log(2.0),
+    power=0.5,
+    further=2.0,
+    hold_out=0.5,
+    intercept=1.0,
+    left=-1.0,
+    gain=0.5,
+    favour=2.0,
+    several=-0.3,
+    partly_single=0.1,
+    partly_several=0.8,
+)
+ONE, TWO = Candidate("a.one", 90.0, 0.0), Candidate("a.one + a.two", 99.0, -1.0, 4.0)
+TOLD = ModelComparison((ONE, TWO), 99.0, 99.0, 9.0, 0.25)
+
+
+def test_evidence_counts_by_a_scale_that_grows_with_what_forms_explain() -> None:
+    assert LAW.scale_nats(99.0) == pytest.approx(20.0)
+    assert LAW.scale_nats(0.0) == pytest.approx(2.0)
+
+
+def test_shares_are_a_softmax_of_evidence_prior_further_effects_and_hold_out() -> None:
+    # Truth by hand: 90 / 20 = 4.5 against 99 / 20 - 1 - 2 + 0.5 x 4 = 3.95; then parameters with 60 / 20 = 3 beside them.
+    expected = np.exp([4.5, 3.95, -np.inf])
+    assert LAW.shares(TOLD) == pytest.approx(expected / expected.sum())
+    beside = np.exp([4.5, 3.95, 3.0])
+    assert LAW.shares(replace(TOLD, parameters_nats=60.0)) == pytest.approx(beside / beside.sum())
+
+
+def test_whether_anything_explains_is_a_logistic_law_of_what_is_left() -> None:
+    # Truth by hand: 1 - ln 10 + 0.5 ln 100 + 2 x 0.25 = 1.5, and 0.3 less where the first is of several effects.
+    assert LAW.explained(TOLD) == pytest.approx(1.0 / (1.0 + np.exp(-1.5)))
+    joint = replace(TOLD, candidates=(replace(ONE, evidence_nats=0.0), TWO))
+    assert LAW.explained(joint) == pytest.approx(1.0 / (1.0 + np.exp(-1.2)))
+    assert features(TOLD, ONE) == pytest.approx((np.log(10.0), np.log(100.0), 0.25, 0.0))
+    assert features(replace(TOLD, favour=None), TWO)[2:] == (0.0, 1.0)
+
+
+def test_where_nothing_was_tried_nothing_explains() -> None:
+    nothing = ModelComparison((), 0.0, 0.0, 500.0)
+    assert LAW.shares(nothing).tolist() == [0.0]
+    assert LAW.explained(nothing) == 0.0
+    assert (first_of(nothing, LAW.shares(nothing)), LAW.partly(None)) == (None, 0.0)
+
+
+def test_parameters_alone_may_explain() -> None:
+    alone = ModelComparison((), 60.0, 0.0, 5.0, None, 60.0)
+    assert LAW.shares(alone).tolist() == [1.0]
+    assert LAW.explained(alone) == pytest.approx(1.0 / (1.0 + np.exp(-(1.0 - np.log(6.0) + 0.5 * np.log(61.0)))))
+
+
+def test_a_wrong_name_of_several_effects_is_oftener_right_in_part() -> None:
+    assert (LAW.partly(ONE), LAW.partly(TWO)) == (0.1, 0.8)
