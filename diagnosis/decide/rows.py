@@ -61,7 +61,7 @@ class Moved:
     @property
     def told(self) -> bool:
         """Whether it gains so much that it is to be told."""
-        return self.gain > (decisions.ROWS_GAIN if self.follows else decisions.ROWS_STRAINED_GAIN)
+        return self.gain > decisions.ROWS_GAIN
 
 
 def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LATE,)) -> tuple[Note, ...]:

@@ -68,8 +68,7 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     if gain <= decisions.WIRING_DOUBT:
         return None
     alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
-    limit = decisions.WIRING_STRAINED_GAIN if is_strained(case, fit) else decisions.WIRING_GAIN
-    return _either(best, alike), gain, bool(gain > limit)
+    return _either(best, alike), gain, bool(gain > decisions.WIRING_GAIN)
 
 
 def _blind_signs(case: Case, nominal: Fit) -> tuple[Note, ...]:

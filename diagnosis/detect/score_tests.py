@@ -22,6 +22,9 @@ from jobs.thread_map import thread_map
 from sim.effect import Effect, Role, Values
 
 Array = NDArray[np.float64]
+# Where the search of a limit begins: the level below which the command stays for these shares of the time, as a peak may be a kick of a
+# moment, and beyond its peak by these factors, where only a rounded corner is reached.
+LEVEL_SHARES, PEAK_SHARES = (0.5, 0.75, 0.9, 0.97, 0.995), (1.05, 1.2)
 SMALL_SIZE = 0.05
 
 
@@ -191,7 +194,7 @@ def _levels(case: Case, _: Linearisation, effect: Effect) -> list[float]:
     model = case.library.bound.model
     column = model.inputs.index(model.places.inputs[effect.place].variable)
     sent = np.abs(np.concatenate([flight.filter_input.u[:, column] for flight in case.flights]))
-    levels = [*np.quantile(sent, decisions.LEVEL_SHARES), *np.multiply(decisions.PEAK_SHARES, np.max(sent))]
+    levels = [*np.quantile(sent, LEVEL_SHARES), *np.multiply(PEAK_SHARES, np.max(sent))]
     return [float(level) for level in dict.fromkeys(levels) if level > 0.0]
 
 

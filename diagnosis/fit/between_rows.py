@@ -25,8 +25,8 @@ def between_rows(case: Case, held: Fit) -> tuple[Case, Fit, tuple[Decision, ...]
         return case, held, ()
     found = plain_fit(other)
     gain = gain_over(case, held, found)
-    better = gain > decisions.WORTH_STRAIGHT
-    rule = decided("between_rows", "inputs", gain, decisions.WORTH_STRAIGHT, "straight" if better else "held")
+    better = gain > decisions.TAKEN_IN
+    rule = decided("between_rows", "inputs", gain, decisions.TAKEN_IN, "straight" if better else "held")
     return (other, found, (rule,)) if better else (case, held, (rule,))
 
 

@@ -20,6 +20,11 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from diagnosis.library.reading_noise import ReadingNoise
 from sim.effect import Effect, Role
 
+# Where searches begin. A torque that comes and goes: shares of the axis' usual torque, correlation times in s, and how many decades lower
+# the white noise is whose place it takes; errors alike from row to row: standard deviations of a reading, correlation times in rows, and
+# the same of the axes' white noise, which may have taken their place.
+PUSH_SHARES, PUSH_TIMES_S, PUSH_LOWERS_NOISE = (0.001, 0.006, 0.03), (0.06, 0.25, 1.0, 4.0), 0.7
+READING_SIZES, READING_ROWS, READING_LOWERS_NOISE = (0.5, 2.0), (1.5, 6.0, 25.0, 100.0), (0.0, 1.5)
 REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
 Numbers = tuple[float, float]  # standard deviation, correlation time in s
@@ -148,18 +153,18 @@ def _push(effect: Effect, usual: float, axis: int, longest_s: float) -> Colour:
 
     def begun(hypothesis: Hypothesis) -> Sequence[Hypothesis]:
         process_noise = hypothesis.process_noise.copy()
-        process_noise[axis] -= decisions.PUSH_LOWERS_NOISE
+        process_noise[axis] -= PUSH_LOWERS_NOISE
         return [replace(hypothesis, process_noise=process_noise)]
 
-    times_s = dict.fromkeys(float(np.clip(time_s, bounds.lower, upper)) for time_s in decisions.PUSH_TIMES_S)
-    starts = tuple((share * usual, time_s) for share in decisions.PUSH_SHARES for time_s in times_s)
+    times_s = dict.fromkeys(float(np.clip(time_s, bounds.lower, upper)) for time_s in PUSH_TIMES_S)
+    starts = tuple((share * usual, time_s) for share in PUSH_SHARES for time_s in times_s)
     return Colour(
         of,
         put,
         without,
         begun,
         starts,
-        decisions.NO_NOISE_SHARE * decisions.PUSH_SHARES[0] * usual,
+        decisions.NO_NOISE_SHARE * PUSH_SHARES[0] * usual,
         (bounds.lower, upper),
     )
 
@@ -179,13 +184,8 @@ def _misreading(output: str, unit: float, step_s: float) -> Colour:
         )
 
     def begun(hypothesis: Hypothesis) -> Sequence[Hypothesis]:
-        return [
-            replace(hypothesis, process_noise=hypothesis.process_noise - less)
-            for less in decisions.READING_LOWERS_NOISE
-        ]
+        return [replace(hypothesis, process_noise=hypothesis.process_noise - less) for less in READING_LOWERS_NOISE]
 
-    starts = tuple(
-        (share * unit, rows * step_s) for share in decisions.READING_SIZES for rows in decisions.READING_ROWS
-    )
-    least = decisions.NO_NOISE_SHARE * decisions.READING_SIZES[0] * unit
+    starts = tuple((share * unit, rows * step_s) for share in READING_SIZES for rows in READING_ROWS)
+    least = decisions.NO_NOISE_SHARE * READING_SIZES[0] * unit
     return Colour(of, put, without, begun, starts, least, (step_s, decisions.LONGEST_READING_S))

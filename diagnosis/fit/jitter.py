@@ -21,6 +21,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.sensor_effects import rates
 from sim.effect import Role
 
+JITTER_SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay, scatter that is tried,
 JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
 SHARED = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
@@ -76,7 +77,7 @@ def jitter_sd(case: Case, hypothesis: Hypothesis, name: str) -> float:
     """
     effect = case.library.effects[name]
     tau_s, jitter_s = (hypothesis.effects[name][effect.symbol(role)] for role in (Role.LATENESS, Role.JITTER))
-    reach = 0.2 * jitter_s if jitter_s > 0.0 else decisions.JITTER_SHARES[0] * tau_s
+    reach = 0.2 * jitter_s if jitter_s > 0.0 else JITTER_SHARES[0] * tau_s
     found = _tried(case, hypothesis, name, {max(jitter_s - reach, 0.0), jitter_s, jitter_s + reach})
     lost = found[jitter_s] - 0.5 * (found[max(jitter_s - reach, 0.0)] + found[jitter_s + reach])
     lost = lost if jitter_s > 0.0 else 2.0 * lost
@@ -101,12 +102,12 @@ def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
         case,
         hypothesis,
         name,
-        (0.0, *(share * tau_s for share in decisions.JITTER_SHARES if share * tau_s < most_s), most_s),
+        (0.0, *(share * tau_s for share in JITTER_SHARES if share * tau_s < most_s), most_s),
     )
     best = max(coarse, key=lambda jitter_s: coarse[jitter_s])
     found = coarse | _tried(case, hypothesis, name, [share * best for share in JITTER_FINELY])
     best = max(found, key=lambda jitter_s: found[jitter_s])
-    return _with(case, hypothesis, name, best if found[best] > found[0.0] + decisions.LEAST_JITTER_GAIN else 0.0)
+    return _with(case, hypothesis, name, best if found[best] > found[0.0] + decisions.TAKEN_IN else 0.0)
 
 
 def _tried(case: Case, hypothesis: Hypothesis, name: str, values_s: Iterable[float]) -> dict[float, float]:

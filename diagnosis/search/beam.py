@@ -88,7 +88,7 @@ def alone(
 def scored_as_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
     """Score tests from the plant as stated, by a filter that expects any motion, where the nominal plant went astray: its parameters took
     the part of what is missing then, which shows nothing beside them."""
-    if not is_astray(nominal.hypothesis, decisions.ASTRAY_FIRST):
+    if not is_astray(nominal.hypothesis, decisions.ASTRAY):
         return []
     stated = fit(case, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE)), rounds=0)
     return [] if stated is None else score_effects(case, linearised(case, stated), case.library.candidates)
@@ -169,7 +169,7 @@ def beam_of(
     if likeliest is None:
         return []
     near = ranked[0].evidence - max(
-        decisions.CLOSE_PAIR, decisions.CLOSE_PAIR_SHARE * (ranked[0].evidence - nominal.evidence)
+        decisions.NEAR_BEST, decisions.CLOSE_PAIR_SHARE * (ranked[0].evidence - nominal.evidence)
     )
     kept: list[FittedHypothesis] = []
     for entry in ranked:
@@ -278,7 +278,7 @@ def _grown(
     worth = worth | _worth(first) if single else worth
     others = thread_map(lambda fitted: asked(fitted, worth), best[1:])
     jobs = [
-        _promising(fitted.fit, score_tests, decisions.FURTHER_GAIN)[: decisions.PARTNERS]
+        _promising(fitted.fit, score_tests, decisions.TAKEN_IN)[: decisions.NEXT]
         for fitted, score_tests in zip(best, (first, *others), strict=True)
     ]
     return ([job for own in jobs for job in own] if jobs[0] else []), worth
@@ -305,6 +305,6 @@ def _fit_all(
     ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
     done = sorted(ends, key=lambda entry: -entry.evidence)
     found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})
-    strayed = [e for e in done[: decisions.ONCE_MORE] if is_astray(e.fit.hypothesis, decisions.ASTRAY_REFINED)]
+    strayed = [e for e in done[: decisions.NEXT] if is_astray(e.fit.hypothesis, decisions.ASTRAY)]
     keep_better(found, thread_map(lambda entry: once_more(case, entry), strayed))
     return True

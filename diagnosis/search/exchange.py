@@ -22,7 +22,7 @@ def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: S
     """
     best = max(found.values(), key=lambda entry: entry.evidence)
     fewer = max((entry.evidence for entry in found.values() if len(entry.effects) < len(best.effects)), default=-np.inf)
-    while len(best.effects) > 1 and best.evidence > fewer + decisions.FURTHER_GAIN:
+    while len(best.effects) > 1 and best.evidence > fewer + decisions.TAKEN_IN:
         better = _exchanged(case, best, found, worth)
         if better is None:
             return
@@ -85,5 +85,5 @@ def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -
     if start is None:
         return []
     score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
-    least = max(decisions.FURTHER_GAIN, decisions.NEARLY_AS_GOOD * (fitted.fit.log_likelihood - start.log_likelihood))
-    return [Job(start, entry) for entry in score_tests if entry.gain > least][: decisions.INSTEAD]
+    least = max(decisions.TAKEN_IN, decisions.NEARLY_AS_GOOD * (fitted.fit.log_likelihood - start.log_likelihood))
+    return [Job(start, entry) for entry in score_tests if entry.gain > least][: decisions.NEXT]

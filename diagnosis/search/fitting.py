@@ -48,12 +48,12 @@ def rough(case: Case, job: Job) -> FittedHypothesis | None:
     start = hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
     if _is_rough(case, entry.effect):
         start = _polished(case, start, entry.effect, POLISHING)
-    begun = _from_stated(case, start) if is_astray(start, decisions.ASTRAY_FIRST) else None
+    begun = _from_stated(case, start) if is_astray(start, decisions.ASTRAY) else None
     found = begun or fit(case, start, rounds=4)
     if found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
-    if begun is None and (found is None or is_astray(found.hypothesis, decisions.ASTRAY_FIRST)):
+    if begun is None and (found is None or is_astray(found.hypothesis, decisions.ASTRAY)):
         found = _likelier(found, _from_stated(case, start))
     if found is not None and holding(case.library, [entry.effect]):
         found = _at_its_level(case, found, entry.effect)
@@ -107,7 +107,7 @@ def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
         state_noise=first_state_noise(case, float(decisions.FIRST_PROCESS_NOISE)),
     )
     start = _begun(case, open_to_all)
-    if is_astray(hypothesis, decisions.ASTRAY_REFINED):
+    if is_astray(hypothesis, decisions.ASTRAY):
         start = _likelier(start, _begun(case, replace(open_to_all, theta=np.zeros_like(hypothesis.theta))))
     end = None if start is None else refined(case, as_fitted(case, start))
     return fitted if end is None or end.evidence <= fitted.evidence else end

@@ -55,11 +55,11 @@ def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | N
         return case, None
     answers = _all_answers(case, linearisation)
     alone = _with_ratios(case, linearisation, answers, 0)
-    if loss_evidence(alone, likely_share(alone)) < decisions.LEAST_LOSS_GAIN:
+    if loss_evidence(alone, likely_share(alone)) < decisions.TAKEN_IN:
         return alone, None
     found, fitted = _settled(case, linearisation, losses, answers)
     theta = linearisation.fit.hypothesis.theta
-    if fitted is not None and theta @ theta > decisions.ASTRAY_LOSSES * len(theta):
+    if fitted is not None and theta @ theta > decisions.ASTRAY * len(theta):
         found, fitted = _likelier((found, fitted), _from_stated(case, linearisation, losses))
     return found, fitted
 
@@ -69,12 +69,12 @@ def _settled(
 ) -> tuple[Case, Fit | None]:
     """What the innovations say of every frame, found again with what was found supposed until nothing is gained."""
     found, fitted = _fitted(case, linearisation, losses, answers)
-    if fitted is None or fitted.log_posterior < linearisation.fit.log_posterior + decisions.LEAST_LOSS_GAIN:
+    if fitted is None or fitted.log_posterior < linearisation.fit.log_posterior + decisions.TAKEN_IN:
         return found, None
     for _ in range(LOSS_ROUNDS):
         refined_noise = linearised(found, fitted)
         again, better = _fitted(found, refined_noise, losses, _all_answers(found, refined_noise))
-        if better is None or better.log_posterior < fitted.log_posterior + decisions.LEAST_LOSS_GAIN:
+        if better is None or better.log_posterior < fitted.log_posterior + decisions.TAKEN_IN:
             break
         more = better.log_posterior - fitted.log_posterior
         found, fitted = again, better
@@ -106,7 +106,7 @@ def _fitted(
     """What the innovations of a ground say of every frame, and the fit with that; None where it says nothing."""
     found = _with_ratios(case, linearisation, answers, SWEEPS)
     share = likely_share(found)
-    if loss_evidence(found, share) < decisions.LEAST_LOSS_GAIN:
+    if loss_evidence(found, share) < decisions.TAKEN_IN:
         return found, None
     hypothesis = linearisation.fit.hypothesis
     start = hypothesis.with_effects({**hypothesis.effects, losses.name: {losses.symbol(Role.LOSS): share}})

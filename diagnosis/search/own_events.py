@@ -49,4 +49,4 @@ def _seen(case: Case, without: Hypothesis, effect: Effect, flight: FilteredLog) 
     if at is None:
         return None
     tests = score_effects(alone, linearised(alone, at), [effect.name])
-    return tests[0].values if tests and tests[0].gain > decisions.FURTHER_GAIN else None
+    return tests[0].values if tests and tests[0].gain > decisions.TAKEN_IN else None

@@ -38,7 +38,7 @@ SMALLER = {
     r"--seed \d+ --cases \d{2,3}": "--seed 3 --cases 1 --kinds single",
     r"--cases \d{2,3}": "--cases 1",
     "--cases 2 --workers": "--cases 1 --workers",
-    "--constant ALARM UNKNOWN --factors 0.7 1.4": "--constant ALARM --factors 1.4",
+    "--constant ALARM MATTERS --factors 0.7 1.4": "--constant ALARM --factors 1.4",
     "compare --plant plants/ce150.toml": r"\g<0> --controllers pid --runs 2 --effects azimuth.cable_spring --steps 1000",
     "splits --plant": "splits --most 1 --plant",
     r"campaign 1000000": "campaign 1000",

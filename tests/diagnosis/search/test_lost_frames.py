@@ -60,7 +60,7 @@ def test_lost_frames_are_told_from_others(plant: BoundPlant, fly: Fly) -> None:
 def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> None:
     case, fitted = losses(plant, fly(41))
     assert fitted is None
-    assert loss_evidence(case, likely_share(case)) < decisions.LEAST_LOSS_GAIN
+    assert loss_evidence(case, likely_share(case)) < decisions.TAKEN_IN
 
 
 @pytest.mark.soak

@@ -57,8 +57,8 @@ def test_what_was_read_when_the_diagnosis_was_loaded_is_not_tried(monkeypatch: p
     def late(most: int = decisions.BEAM[0], least: float = decisions.CERTAIN) -> float:
         return most * least
 
-    monkeypatch.setitem(sys.modules, "diagnosis.of_this_test", SimpleNamespace(late=late, own=decisions.ALIKE))
-    assert {"CERTAIN", "ALIKE"} <= read_at_load()
+    monkeypatch.setitem(sys.modules, "diagnosis.of_this_test", SimpleNamespace(late=late, own=decisions.SINGLES))
+    assert {"CERTAIN", "SINGLES"} <= read_at_load()
     assert "BEAM" not in read_at_load()
     assert "read once" in trials_of(("CERTAIN",), (0.7,))[1]["CERTAIN"]
 
