@@ -23,7 +23,8 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, straight
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.nominal import best_plain_fit, plain_fit, with_memory
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_fit, with_memory
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
@@ -131,13 +132,33 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
 
 
 def _detected(case: Case, checked: Case | None) -> Seen:
-    """Fit the plant alone, and score the library beside it."""
+    """Fit the plant alone, and score the library beside it; where a gap shows, once more from where the best single effect left the plant's
+    numbers, as slopes from the stated ones may lead to another hill."""
     nominal = best_plain_fit(case)
     held = case
     case, nominal, between = between_rows(case, nominal)
     nominal = with_memory(case, nominal)
     if checked is not None and case is not held:
         checked = straight(checked)
+    seen = _scored(case, checked, nominal, between)
+    if not _alarmed(seen.detection.p):
+        return seen
+    begun = _alone(seen)
+    best = begun.best(1)[0]
+    again = plain_beside(case, best.fit)
+    if again is None:
+        return replace(seen, begun=begun)
+    gain = evidence(again, case.library.effects) - seen.retuned.evidence
+    better = gain > decisions.TAKEN_IN
+    outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
+    rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
+    if better:
+        return _scored(case, checked, again, (*between, rule))
+    return replace(seen, begun=begun).because(rule)
+
+
+def _scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:
+    """What the plant alone as fitted leaves to the library, and whether that is a gap."""
     case = with_usual(case, nominal.hypothesis)
     linearisation = linearised(case, nominal)
     case, lossy = with_losses(case, linearisation)
@@ -145,7 +166,7 @@ def _detected(case: Case, checked: Case | None) -> Seen:
     score_tests = score_effects(case, linearisation, case.library.candidates)
     retuned = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
     detection = detect(case, linearisation, score_tests, lossy)
-    rules = (*between, *detection.decisions, _false_alarm("logs", detection.p))
+    rules = (*rules, *detection.decisions, _false_alarm("logs", detection.p))
     return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
 
 

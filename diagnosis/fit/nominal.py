@@ -49,6 +49,19 @@ def settled(case: Case, start: Hypothesis) -> Fit:
     return found
 
 
+def plain_beside(case: Case, named: Fit) -> Fit | None:
+    """The plant alone, fitted from the numbers that it has beside effects; None where it has none, or cannot follow its logs from there."""
+    hypothesis = named.hypothesis
+    names = case.added(hypothesis.effects)
+    if not names:
+        return None
+    kept = {name: values for name, values in hypothesis.effects.items() if name not in names}
+    try:
+        return with_memory(case, settled(case, hypothesis.with_effects(kept)))
+    except BadInput:
+        return None
+
+
 def with_memory(case: Case, found: Fit) -> Fit:
     """The fit with noise with a memory where the logs tell of it."""
     coloured = with_colours(case, found)

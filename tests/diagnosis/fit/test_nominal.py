@@ -1,0 +1,55 @@
+"""The plant alone: its fit from where a name left the plant's numbers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.diagnose import _detected
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.nominal import SETTLED_GAIN, nominal_fit, plain_beside
+from diagnosis.hypothesis.case import Case
+from tests.diagnosis.arm import arm_case, arm_log
+
+RUB = {"arm.coulomb": {"b": 1e-5}}
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    """An arm as its file states it, without any effect."""
+    return arm_case(arm_log(seed=81))
+
+
+def named(case: Case, plain: Fit) -> Fit:
+    found = fit(case, plain.hypothesis.with_effects(RUB))
+    assert found is not None
+    return found
+
+
+def test_beside_a_name_that_is_none_the_plant_is_what_it_is_alone(case: Case) -> None:
+    plain = nominal_fit(case)
+    again = plain_beside(case, named(case, plain))
+    assert again is not None
+    assert not again.hypothesis.effects
+    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
+    assert plain_beside(case, plain) is None
+
+
+def test_from_another_hill_the_plant_comes_back(case: Case) -> None:
+    """Truth: parameters as stated. A fit two deviations off under a thousand times the noise is not where the logs say."""
+    plain = nominal_fit(case)
+    hypothesis = plain.hypothesis
+    far = replace(hypothesis, theta=hypothesis.theta + 2.0, process_noise=hypothesis.process_noise + 3.0)
+    lost = fit(case, far, rounds=0)
+    assert lost is not None
+    assert lost.log_posterior < plain.log_posterior - 1000.0
+    again = plain_beside(case, replace(named(case, plain), hypothesis=far.with_effects(RUB)))
+    assert again is not None
+    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
+    assert np.all(np.abs(again.hypothesis.theta) < 3.0)
+
+
+def test_no_gap_asks_for_no_second_fit(case: Case) -> None:
+    seen = _detected(case, None)
+    assert seen.detection.p > 1e-3
+    assert not [rule for rule in seen.decisions if rule.rule == "plain_again"]
