@@ -175,8 +175,13 @@ def beam_of(
     for entry in ranked:
         if len(kept) == count or (len(entry.effects) > 1 and entry.evidence <= near):
             break
-        kept += [] if any(is_twin(case, entry, other) for other in kept) else [entry]
+        kept += [] if any(_same_so_far(case, entry, other) for other in kept) else [entry]
     return kept if count < 3 or likeliest in kept else [*kept[: count - 1], likeliest]
+
+
+def _same_so_far(case: Case, entry: FittedHypothesis, other: FittedHypothesis) -> bool:
+    """Whether the same will grow beside both: they are twins, and these data do not tell them apart."""
+    return other.evidence - entry.evidence <= decisions.NEAR_BEST and is_twin(case, entry, other)
 
 
 def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> list[Job]:
