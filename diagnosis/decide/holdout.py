@@ -73,10 +73,13 @@ class Holdout:
 
     def score(self, hypothesis: Hypothesis) -> Score:
         """By how much a hypothesis predicts these logs better than `base`; by nothing where all that it names happened in other logs."""
-        foreseen = self.foreseen(hypothesis)
-        if self._named(hypothesis) and not self._named(foreseen):
+        if self._named(hypothesis) and not self._named(self.foreseen(hypothesis)):
             return Score(0.0, 0.0, 0.0)
-        return score(self._errors(foreseen), self._errors(self.base.fit.hypothesis))
+        return self.score_of_plant(hypothesis)
+
+    def score_of_plant(self, hypothesis: Hypothesis) -> Score:
+        """The same of the plant that a hypothesis leaves for these logs, whatever it names: its parameters count too."""
+        return score(self._errors(self.foreseen(hypothesis)), self._errors(self.base.fit.hypothesis))
 
     def _named(self, hypothesis: Hypothesis) -> list[str]:
         """The effects of a hypothesis that `base` lacks, noise apart."""
@@ -202,7 +205,7 @@ def added(
 ) -> tuple[FittedHypothesis, tuple[Note, ...], tuple[Decision, ...]]:
     """What is to be added: what has more than half of all `probability` unless the hold-out is predicted worse by it, what has less only
     where that is predicted better; else the plant without it, as is told then."""
-    told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
+    told, of = holdout.score_of_plant(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
     likely = probability > decisions.LIKELIER_THAN_NOT
     least = -float(decisions.MATTERS) if likely else float(decisions.MATTERS)
     short = told.gain < least

@@ -5,7 +5,7 @@ from diagnosis.fit.coloured_noise import coloured_noise_of, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
 from jobs.thread_map import thread_map
 from records.errors import BadInput
 
@@ -65,8 +65,16 @@ def plain_beside(case: Case, named: Fit) -> Fit | None:
 def with_memory(case: Case, found: Fit) -> Fit:
     """The fit with noise with a memory where the logs tell of it."""
     coloured = with_colours(case, found)
-    if coloured is found.hypothesis:
-        return found
+    return found if coloured is found.hypothesis else _under(case, found, coloured)
+
+
+def with_memory_of(case: Case, found: Fit, known: Hypothesis) -> Fit:
+    """The fit with the noise that another hypothesis has, with the numbers that it then has beside this one."""
+    return _under(case, found, as_noisy(case, found.hypothesis, known))
+
+
+def _under(case: Case, found: Fit, coloured: Hypothesis) -> Fit:
+    """The fit under noise with a memory, until both agree."""
     for _ in range(SETTLING_ROUNDS):
         again = fit(case, coloured_noise_of(case, coloured), rounds=NOMINAL_ROUNDS)
         if again is None:

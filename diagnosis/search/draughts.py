@@ -7,10 +7,11 @@ from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.foretold import foretold_nats
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.nominal import with_memory
+from diagnosis.fit.nominal import with_memory, with_memory_of
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
+from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on, passes
 from diagnosis.validate.fitted_logs import FittedLogs
 from jobs.thread_map import thread_map
 from records.reasons import Decision
@@ -47,19 +48,42 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
-    Where it does so beside the best, evidence under it is not to be compared with evidence without.
+    Where it does so beside the best, evidence under it is not to be compared with evidence without. What it cannot bring near the best is
+    not asked.
     """
     best = max(fitted, key=lambda entry: entry.evidence, default=None)
     first = None if best is None else _with_memory(case, best)
-    if first is None:
+    if best is None or first is None:
         return []
-    others = thread_map(lambda entry: _with_memory(case, entry), [entry for entry in fitted if entry is not best])
-    return [first, *(entry for entry in others if entry is not None)]
+    others = [entry for entry in fitted if entry is not best]
+    others = _in_reach(case, first, others)
+    found = thread_map(lambda entry: _with_memory(case, entry, None if first is best else first), others)
+    return [first, *(entry for entry in found if entry is not None)]
 
 
-def _with_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
-    """The hypothesis with its noise with a memory, or itself where that is no likelier; None where it would be more than noise."""
-    found = with_memory(case, fitted.fit)
+def _in_reach(case: Case, first: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
+    """Those of the others that noise with a memory could bring near the first: it gains no more than their innovations foretell,
+    beyond what those of the first do, which rounding leaves."""
+    left = _foretold(case, first)
+    promised = thread_map(lambda entry: max(_foretold(case, entry) - left, 0.0), others)
+    near = first.evidence - decisions.NEAR_BEST
+    return [entry for entry, gain in zip(others, promised, strict=True) if entry.evidence + gain >= near]
+
+
+def _foretold(case: Case, fitted: FittedHypothesis) -> float:
+    runs = passes(case, fitted.fit.hypothesis)
+    return 0.0 if runs is None else foretold_nats(runs)
+
+
+def _with_memory(
+    case: Case, fitted: FittedHypothesis, known: FittedHypothesis | None = None
+) -> FittedHypothesis | None:
+    """The hypothesis with its noise with a memory, sought from that of one that is `known`, or itself where that is no likelier; None where
+    it would be more than noise."""
+    if known is None:
+        found = with_memory(case, fitted.fit)
+    else:
+        found = with_memory_of(case, fitted.fit, known.fit.hypothesis)
     if found is fitted.fit:
         return fitted
     told = as_fitted(case, found)
