@@ -94,6 +94,20 @@ def test_a_beam_holds_what_differs(late: Case) -> None:
     assert [entry.effects for entry in kept] == [("theta_sensor.lag",), ("arm.coulomb",)]
 
 
+def test_twins_that_the_logs_tell_apart_both_grow(late: Case) -> None:
+    # Truth: a lag of the drive may be one of two effects though the sensor's alone is 300 nats likelier.
+    entries = [replace(named("theta_sensor.lag"), evidence=400.0), replace(named("input.lag"), evidence=100.0)]
+    kept = beam_of(late, entries, replace(named(), evidence=0.0), 2)
+    assert [entry.effects for entry in kept] == [("theta_sensor.lag",), ("input.lag",)]
+
+
+def test_noise_is_not_sought_beside_what_it_cannot_bring_near_the_best(late: Case) -> None:
+    # Truth: a lag of the drive, under a smooth torque that is some hundred nats of noise with a memory: not a hundred thousand.
+    drive = supposed(late, LAG)
+    hopeless = replace(supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), evidence=drive.evidence - 1e5)
+    assert [entry.effects for entry in with_noise_beside(late, [drive, hopeless])] == [drive.effects]
+
+
 def test_the_share_of_a_name_is_that_of_what_is_hardly_told_from_it_too(late: Case) -> None:
     tried = (named("input.lag"), named("theta_sensor.lag"), named("arm.coulomb"))
     weighed = Weighed(tried, (0.3, 0.2, 0.1), 0.4, 0.0, 10.0)
