@@ -140,7 +140,7 @@ def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Mapping[FittedHypothe
     likely = [entry for entry, p in shares if p >= decisions.LEAST_PREFERRED][: decisions.PREFERRED]
     if len(likely) < 2:
         return {}, ()
-    told = {entry: holdout.score(entry.fit.hypothesis).gain for entry in likely}
+    told = {entry: holdout.score_of_plant(entry.fit.hypothesis).gain for entry in likely}
     seconds = sum(len(windows(flight.log.t_s)) for flight in holdout.case.flights)
     first = told[likely[0]]
     rules = tuple(
