@@ -1,10 +1,12 @@
-/* The covariance over a step, F P F': the transition F is the Jacobian's series, to the square of the step. */
+/* The covariance over a substep, F P F' and process noise: the transition F is the Jacobian's series, to the square of the step. */
 #ifndef COVARIANCE_H
 #define COVARIANCE_H
 
 #include <string.h>
 
-#include "estimate.h"
+#include "lag.h"
+#include "rest.h"
+#include "substep.h"
 
 /* to = left times right, where `has` says which entries of `left` can be other than 0: known to the compiler, which leaves out the rest.
  * Rows of states that sleep are not touched. */
@@ -26,7 +28,7 @@ ALWAYS_INLINE void product(const filter_state *at, const matrix left, const int 
 }
 
 /* F = 1 + h A + h^2 A^2 / 2 */
-static void transition(filter_state *at, double h_s)
+static void series(filter_state *at, double h_s)
 {
     UNROLLED for (int i = 0; i < N; i++)
         UNROLLED for (int k = 0; k < N; k++)
@@ -42,8 +44,20 @@ static void transition(filter_state *at, double h_s)
     }
 }
 
+/* F, with the rows that are no series: of speeds at rest, of noise with a memory, of states that follow. */
+static void find_transition(filter_state *at, const substep *part)
+{
+    empty_rows(part->rests, at->j.A, N);
+    series(at, part->h_s);
+    empty_rows(part->rests, at->F[0], WIDTH);
+    for (int i = 0; i < N; i++)
+        if (part->kept[i] < 1.0)
+            at->F[i][i] = part->kept[i];
+    follow_transition(at);
+}
+
 /* P = F P F' + noise */
-static void spread(filter_state *at, const double *noise)
+static void propagate(filter_state *at, const double *noise)
 {
     product(at, at->F, F_HAS, at->P, at->FP);
     for (int n = 0; n < at->states.awake; n++)
@@ -57,7 +71,17 @@ static void spread(filter_state *at, const double *noise)
     }
 }
 
-/* F of the pieces done so far: that of the last times that of those before it. */
+/* Speeds take their own way of noise, about and behind that of all other states. */
+static void predict_covariance(filter_state *at, substep *part)
+{
+    double brought[AXES] = {0.0};
+    part_speeds(at, part, brought);
+    add_half(at, part);
+    propagate(at, part->noise);
+    return_speeds(at, part, brought);
+}
+
+/* F of the substeps done so far: that of the last times that of those before it. */
 static void keep_transition(const filter_state *at, double *F, bool is_first)
 {
     double product[N * N];

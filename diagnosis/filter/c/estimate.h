@@ -15,7 +15,7 @@ typedef struct {
     filter_request *request;
     double c[N_CONSTANTS], u[N_INPUTS];
     plant_body body;
-    int64_t pieces;
+    int64_t pieces; /* that events cut the motion into so far */
     jacobians j;
     matrix P, A, square, F, FP, PF; /* the last five are worked with within a step */
     /* Rows and columns of matrices are 0 where a state sleeps, but F's are those of 1, and are left alone. */
@@ -24,6 +24,7 @@ typedef struct {
     filter_slopes slopes;
 } filter_state;
 
+/* Before the first reading: the start asked for, as sure as asked for. */
 static void start(filter_state *at, filter_request *request)
 {
     at->request = request;
@@ -51,7 +52,8 @@ static void start(filter_state *at, filter_request *request)
     request->log_likelihood = 0.0;
 }
 
-static void apply(filter_state *at, int64_t step)
+/* The inputs that are held from an instant on, within their limits. */
+static void hold_inputs(filter_state *at, int64_t step)
 {
     for (int j = 0; j < N_INPUTS; j++)
         at->u[j] = lane_clamp(at->request->u[step * N_INPUTS + j], at->c[INPUT_LOWER[j]], at->c[INPUT_UPPER[j]]);

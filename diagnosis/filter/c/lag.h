@@ -1,29 +1,30 @@
-/* States that follow others (follow.h) over a step: their mean, and their rows of the transition. */
+/* States that follow others (follow.h) over a substep: their mean, and their rows of the transition. */
 #ifndef LAG_H
 #define LAG_H
 
-#include "estimate.h"
+#include "substep.h"
 
-/* Where states that follow others are after a step from `before`; `slopes_A` are those at its middle. */
-static void follow(filter_state *at, const plant_body *before, double t_s, double h_s, const double *slopes_A)
+/* Where they are at its end, by the Jacobian A at its middle. */
+static void follow(filter_state *at, const substep *part)
 {
     bool any_follows = false;
     for (int i = 0; i < N; i++)
         any_follows |= FOLLOWING(at->states, i);
     if (!any_follows)
         return;
+    const double *const x = part->before.x, *const A = at->j.A;
     double rates[N], torque[AXES], up[AXES], down[AXES];
-    follow_over(at->following, &at->states, slopes_A, h_s);
-    model_rates(t_s, before->x, at->u, at->c, before->sign, before->move, rates, torque, up, down);
+    follow_over(at->following, &at->states, A, part->h_s);
+    model_rates(part->t_s, x, at->u, at->c, part->before.sign, part->before.move, rates, torque, up, down);
     for (int i = 0; i < N; i++) {
         if (!FOLLOWING(at->states, i))
             continue;
         const follow_weights w = at->following[i].whole;
-        double g = rates[i] - slopes_A[i * N + i] * before->x[i], changed = 0.0;
+        double g = rates[i] - A[i * N + i] * x[i], changed = 0.0;
         for (int m = 0; m < N; m++)
             if (m != i && A_HAS[i][m])
-                changed += slopes_A[i * N + m] * (at->body.x[m] - before->x[m]);
-        at->body.x[i] = w.kept * before->x[i] + (w.first + w.last) * g + w.last * changed;
+                changed += A[i * N + m] * (at->body.x[m] - x[m]);
+        at->body.x[i] = w.kept * x[i] + (w.first + w.last) * g + w.last * changed;
     }
 }
 
