@@ -91,10 +91,15 @@ class DesignPoints:
     axes: tuple[tuple[PointDesign, ...], ...]
 
 
-def design_points(bound: BoundPlant, settings: DesignSettings) -> DesignPoints:
-    """Design all axes at each operating point; raises BadInput naming angle and axis where that is not possible."""
+def design_points(
+    bound: BoundPlant, settings: DesignSettings, points: tuple[OperatingPoint, ...] | None = None
+) -> DesignPoints:
+    """Design all axes at each operating point; raises BadInput naming angle and axis where that is not possible.
+
+    `points` are the plant's equilibria over the grid, where somebody has them: other poles leave them where they are.
+    """
     psi_rad = grid(settings)
-    points = equilibria(bound, settings, psi_rad)
+    points = equilibria(bound, settings, psi_rad) if points is None else points
     axes = tuple(
         tuple(
             design_point(bound, point, settings, settings.axis(loop.axis), float(psi))

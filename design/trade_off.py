@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from design.analysis.margins import margins
 from design.loop import open_loop
-from design.operating_points import DesignPoints, design_points
+from design.operating_points import DesignPoints, design_points, equilibria, grid
 from design.schedule import evaluate, schedule_of
 from design.settings import AxisSettings, DesignSettings
 from design.table import axis_law
@@ -13,6 +13,7 @@ from records.errors import BadInput
 from records.loops import LOOPS
 from records.table import AXES, ControllerTable
 from sim.bind import BoundPlant
+from sim.equilibrium import OperatingPoint
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 from sim.tracking import Tracking, tracking
@@ -36,11 +37,11 @@ def trade_off(bound: BoundPlant, settings: DesignSettings, table: ControllerTabl
     """The points of FACTORS that can be designed for, from slow to fast; none without a roll-off on both axes of a helicopter."""
     if settings.loops != LOOPS or not all(settings.axis(axis).roll_off_pole_rad_s for axis in AXES):
         return ()
-    points = []
+    points, rests = [], equilibria(bound, settings, grid(settings))
     for factor in FACTORS:
         moved = replace(settings, axes=tuple(_moved(settings, axis, factor) for axis in AXES))
         try:
-            points.append(_point(bound, moved, table, factor))
+            points.append(_point(bound, moved, rests, table, factor))
         except BadInput:  # a controller that is unstable itself
             continue
     return tuple(points)
@@ -51,8 +52,14 @@ def _moved(settings: DesignSettings, axis: str, factor: float) -> AxisSettings:
     return replace(wishes, roll_off_pole_rad_s=factor * wishes.roll_off_pole_rad_s)
 
 
-def _point(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, factor: float) -> TradePoint:
-    points = design_points(bound, settings)
+def _point(
+    bound: BoundPlant,
+    settings: DesignSettings,
+    rests: tuple[OperatingPoint, ...],
+    table: ControllerTable,
+    factor: float,
+) -> TradePoint:
+    points = design_points(bound, settings, rests)
     moved = replace(table, axes=tuple(axis_law(bound, settings, points, axis) for axis in AXES))
     log = fly_law(bound, moved, flight(bound, settings.sample_period_s))
     return TradePoint(

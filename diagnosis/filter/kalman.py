@@ -225,7 +225,7 @@ def _given(filter_input: FilterInput, p: Array, x0: Array, noise: Noise) -> dict
         "x0": _double(x0),
         "p0": _double(noise.p0),
         "q": _double(noise.q),
-        "stir": _double(np.outer(filter_input.untold_s**2, noise.drive)) if filter_input.untold_s.any() else None,
+        "further": _double(np.outer(filter_input.untold_s**2, noise.drive)) if filter_input.untold_s.any() else None,
         "forget": _double(noise.forget),
         "rub": _double(noise.rub),
     }

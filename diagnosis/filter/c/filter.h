@@ -16,7 +16,7 @@ typedef struct {
     const double *t_s, *u, *y, *r;           /* [steps], [steps][N_INPUTS], [steps][N_OUTPUTS] measured, their variances */
     const int64_t *row, *place;              /* [steps]: where the states go, [steps][N_OUTPUTS]: where the results go; or -1 */
     const double *p, *x0, *p0, *q;           /* [N_PARAMETERS]; [N_STATES]: start, its variance, noise intensity */
-    const double *stir;                      /* [steps][N_STATES] further variance over each step, or NULL */
+    const double *further;                   /* [steps][N_STATES] further variance over each step, or NULL */
     const double *forget;                    /* [N_STATES]: the rate, in 1/s, at which a state that is noise alone decays; 0 for others */
     const double *rub;                       /* [AXES]: how long, in s, the friction of an axis about its rest is in doubt */
     const uint8_t *locked;                   /* [AXES] */

@@ -4,7 +4,7 @@
  *     z = rate t, phi1 = (1 - e^-z) / z, phi2 = (1 - phi1) / z
  *
  * (Hochbruck and Ostermann, Exponential integrators, Acta Numerica 2010, section 2): right however long t is beside 1 / rate, so that
- * these states need no pieces of a step. */
+ * these states need no substeps. */
 #ifndef FOLLOW_H
 #define FOLLOW_H
 

@@ -1,0 +1,41 @@
+/* A step from an instant to the next goes in substeps, short enough for series that end at h^2. */
+#ifndef SUBSTEP_H
+#define SUBSTEP_H
+
+#include "estimate.h"
+
+#define FASTEST 0.5        /* of a state's own time constant, or of a radian's time of a swing, that a substep may last, */
+#define MANY_SUBSTEPS 8.0  /* but for so many: beyond, nothing is left of it anyway, and a substep need only be so short */
+#define FADES 1.5          /* that the series, too, make less of it: at 2 they would begin to grow */
+#define MOST_SUBSTEPS 64.0
+
+/* `share` of a step from t_s on, and what its parts hand to one another. */
+typedef struct {
+    int64_t step;
+    double t_s, h_s, share;
+    plant_body before;            /* the mean where it begins */
+    double noise[N];              /* variance that it brings each state */
+    double kept[N];               /* what is left over it of each state that is noise with a memory; 1 of others */
+    double friction[AXES];        /* of each axis, as an acceleration at rest */
+    bool held[AXES], rests[AXES]; /* axes whose mean stays; those of them that are sure to */
+} substep;
+
+/* How many a step has: as many as the fastest state, and the fastest two that swing against each other, need; but for noise with a memory
+ * and states that follow, which move exactly. */
+static int substeps_of(const filter_state *at, double h_s)
+{
+    const double *const A = at->j.A;
+    double fastest = 0.0, swinging = 0.0;
+    UNROLLED for (int i = 0; i < N; i++) {
+        if (!AWAKE(at->states, i) || FOLLOWING(at->states, i) || at->request->forget[i] > 0.0)
+            continue;
+        fastest = fmax(fastest, fabs(A[i * N + i]));
+        UNROLLED for (int k = 0; k < i; k++)
+            if (A_HAS[i][k] && A_HAS[k][i])
+                swinging = fmax(swinging, fabs(A[i * N + k] * A[k * N + i]));
+    }
+    const double span = h_s * fmax(fastest, sqrt(swinging)), enough = fmax(MANY_SUBSTEPS, ceil(span / FADES));
+    return (int)fmin(fmax(ceil(span / FASTEST), 1.0), fmin(enough, MOST_SUBSTEPS));
+}
+
+#endif
