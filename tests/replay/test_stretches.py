@@ -10,8 +10,10 @@ from replay.digits import printing
 from replay.flight import flight_of
 from replay.printed import agrees_as_printed
 from replay.stretches import replay_stretches
+from sim.loop import fly_law
 from tests.law_tables import ce150_table
-from tests.replay.firmware_flights import default_flight, own, rows_of
+from tests.replay.firmware_flights import default_flight, lively, own, plant, rows_of
+from twinlaw.pages.diagnose.firmware import differs
 
 TABLE = ce150_table()
 
@@ -81,3 +83,21 @@ def test_a_second_recording_in_the_file_is_replayed_from_rest() -> None:
     )
     begins = np.arange(len(twice.t_s)) == len(log.t_s)
     assert "it agrees to the bit" in (replay_stretches(twice, TABLE, begins=begins).sentence or "")
+
+
+def test_a_law_that_flew_in_double_precision_by_its_log_is_run_again_in_it() -> None:
+    log = fly_law(plant(), TABLE, lively())
+    assert log.arithmetic == "float64"
+    found = replay_stretches(log, TABLE)
+    assert (found.first_difference_s, found.cause) == (None, "flown_in_double")
+    assert not differs(found.record())
+    unsaid = replay_stretches(replace(log, arithmetic=None), TABLE)  # a firmware that computes so is not its table's
+    assert (unsaid.cause, differs(unsaid.record())) == ("float64", True)
+
+
+def test_what_else_is_amiss_with_a_flight_in_double_precision_is_still_told() -> None:
+    log = fly_law(plant(), TABLE, lively())
+    late = replace(log, y=np.concatenate([log.y[1:], log.y[-1:]]))
+    found = replay_stretches(late, TABLE)
+    assert "stale_sample" in (found.cause or "")
+    assert "double" not in (found.sentence or "")
