@@ -5,15 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from design.law import FloatLaw
 from records.log import RunLog
 from replay.digits import printing
 from replay.flight import flight_of
 from replay.printed import agrees_as_printed
 from replay.stretches import replay_stretches
-from sim.loop import fly_law
-from tests.law_tables import ce150_table
+from sim.bind import bind
+from sim.loop import fly, fly_law
+from tests.law_tables import ce150_table, changed_axis
 from tests.replay.firmware_flights import default_flight, lively, own, plant, rows_of
 from twinlaw.pages.diagnose.firmware import differs
+from verification.host_law import host_law
 
 TABLE = ce150_table()
 
@@ -101,3 +104,16 @@ def test_what_else_is_amiss_with_a_flight_in_double_precision_is_still_told() ->
     found = replay_stretches(late, TABLE)
     assert "stale_sample" in (found.cause or "")
     assert "double" not in (found.sentence or "")
+
+
+@pytest.mark.parametrize("decimals", [None, 3])
+def test_the_steps_of_a_sensor_are_no_rounding_of_the_log(decimals: int | None) -> None:
+    """Steps of 1 mrad have three decimals, as text too: a firmware that computes otherwise is not cleared by them."""
+    bound = bind(replace(plant().plant, sensors={"psi_rad": 1e-3, "phi_rad": 1e-3}))
+    table = changed_axis(changed_axis(TABLE, "elevation", resolution_rad=1e-3), "azimuth", resolution_rad=1e-3)
+    for law, cause in ((host_law(table), None), (FloatLaw(table), "float64")):
+        log = fly(bound, law, lively(), table_digest=table.digest)
+        log = log if decimals is None else replace(log, y=np.round(log.y, decimals))
+        found = replay_stretches(log, table)
+        assert found.cause == cause
+        assert found.bit_exact == (cause is None)
