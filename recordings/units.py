@@ -94,13 +94,30 @@ def known(spelling: str) -> Unit | None:
 
 
 def suffix_of(name: str) -> str:
-    """The unit that a name ends in, as it stands there: "deg" of run1.psi_deg, "deg_s" of q_deg_s, empty where it ends in none."""
-    tokens = re.sub(r"[\[(]\d+[\])]$", "", re.split(r"[./\\]", name)[-1]).split("_")
+    """The unit that a name ends in: "deg" of run1.psi_deg, psiDeg and psi.deg, "deg_s" of q_deg_s, empty where it ends in none."""
+    return _parted(name)[1]
+
+
+def without_suffix(name: str) -> str:
+    """The last part of a name without the unit that it ends in: "psi" of run1.psi_deg and psiDeg."""
+    return _parted(name)[0]
+
+
+def _parted(name: str) -> tuple[str, str]:
+    """The last part of a name without its unit, and that unit."""
+    *path, last = re.split(r"[./\\]", name)
+    last = re.sub(r"[\[(]\d+[\])]$", "", last)
+    tokens = last.split("_")
     for count in (2, 1):
         suffix = "_".join(tokens[-count:])
         if len(tokens) > count and suffix in _BY_SUFFIX:
-            return suffix
-    return ""
+            return "_".join(tokens[:-count]), suffix
+    if path and len(last) > 2 and last in _BY_SUFFIX:  # {"psi": {"deg": 11.5}}; log.um is a name
+        return last, last
+    humped = re.fullmatch(r"(.*[a-z0-9])([A-Z][a-z]+)", last)
+    if humped and humped[2].lower() in _BY_SUFFIX:
+        return humped[1], humped[2].lower()
+    return last, ""
 
 
 def unit_of_clock(name: str) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from recordings.signals import Signal
-from recordings.units import known, suffix_of, unit_of_clock
+from recordings.units import known, unit_of_clock, without_suffix
 
 # As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
 TIME_NAMES = frozenset(
@@ -34,13 +34,13 @@ def _rises_in_time(signal: Signal) -> bool:
 
 
 def is_time_name(name: str) -> bool:
-    """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `t_s`, `millis`."""
-    last = re.split(r"[./]", name)[-1].lower().strip("_")
-    if unit_of_clock(last):
+    """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `TimeMs`, `t_s`, `millis`."""
+    last = re.split(r"[./]", name)[-1].strip("_")
+    if unit_of_clock(last.lower()):
         return True
-    unit = suffix_of(last)
-    bare = last.removesuffix(f"_{unit}") if unit and (known(unit) or known("s")) else last
-    return bare in TIME_NAMES
+    if last.endswith(("]", ")")):  # one of many
+        return False
+    return not TIME_NAMES.isdisjoint((last.lower(), without_suffix(last.lower()), without_suffix(last).lower()))
 
 
 def _clock_of(name: str, signal: Signal, signals: Mapping[str, Signal], clocks: list[str]) -> str | None:
