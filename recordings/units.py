@@ -7,6 +7,11 @@ from math import pi
 
 from records.text.units import dimension
 
+# As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
+TIME_NAMES = frozenset(
+    "t time times tout timestamp timestamps time_stamp stamp elapsed elapsed_time datenum zeit temps tiempo tempo".split()  # noqa: SIM905
+)
+
 
 @dataclass(frozen=True)
 class Unit:
@@ -77,8 +82,8 @@ UNITS = (
     Unit("s", 1e-3, ("ms", "msec", "millis", "millisecond", "milliseconds"), ("ms", "msec", "millis")),
     Unit("s", 1e-6, ("us", "µs", "μs", "usec", "micros", "microsecond", "microseconds"), ("us", "usec", "micros")),
     Unit("s", 1e-9, ("ns", "nsec", "nanos", "nanosecond", "nanoseconds"), ("ns", "nsec", "nanos")),
-    Unit("s", 60.0, ("min", "minute", "minutes"), ("minutes",)),
-    Unit("s", 3600.0, ("h", "hour", "hours"), ("hours",)),
+    Unit("s", 60.0, ("min", "mins", "minute", "minutes"), ("minutes",)),
+    Unit("s", 3600.0, ("h", "hr", "hrs", "hour", "hours"), ("hours",)),
     Unit("s", 86400.0, ("day", "days"), ("days",)),
     Unit("1", 1.0, ("1", "-", "none", "dimensionless", "n/a"), ()),
     Unit("1", 1e-2, ("%", "percent", "pct"), ("percent", "pct")),
@@ -121,8 +126,11 @@ def _parted(name: str) -> tuple[str, str]:
 
 
 def unit_of_clock(name: str) -> str:
-    """The unit that is all of a clock's name: "millis" of run1.millis, empty where it is none; of one letter it may be anything."""
+    """The unit of a clock's name: "millis" of run1.millis, "h" of time_h, empty where it is none; one letter alone may be anything."""
     last = re.split(r"[./\\]", name)[-1]
+    stem, _, ending = last.rpartition("_")
+    if stem.lower() in TIME_NAMES and ending in _BY_SPELLING and _BY_SPELLING[ending].si == "s":
+        return ending
     return last if len(last) > 1 and last in _BY_SUFFIX and _BY_SUFFIX[last].si == "s" else ""
 
 
