@@ -117,3 +117,18 @@ def test_the_steps_of_a_sensor_are_no_rounding_of_the_log(decimals: int | None) 
         found = replay_stretches(log, table)
         assert found.cause == cause
         assert found.bit_exact == (cause is None)
+
+
+def test_zeros_written_for_readings_that_were_not_there_are_none_also_beside_zero() -> None:
+    """Far from zero the check of the log leaves them out; a step or two beside it nobody sees them but the law."""
+    log = own()
+    far = np.flatnonzero(np.abs(log.y[:, 1]) > 0.1)[5::97]
+    near = np.flatnonzero((log.y[:, 1] != 0.0) & (np.abs(log.y[:, 1]) < 5e-3))[3::7]
+    assert far.size > 5
+    assert near.size > 5
+    y = log.y.copy()
+    y[far, 1], y[near, 1] = np.nan, 0.0
+    found = replay_stretches(replace(log, y=y), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "sample_not_logged")
+    y[far, 1] = log.y[far, 1]  # where no reading is missing a zero is a zero
+    assert replay_stretches(replace(log, y=y), TABLE).cause != "sample_not_logged"
