@@ -132,3 +132,26 @@ def test_zeros_written_for_readings_that_were_not_there_are_none_also_beside_zer
     assert (found.bit_exact, found.cause) == (False, "sample_not_logged")
     y[far, 1] = log.y[far, 1]  # where no reading is missing a zero is a zero
     assert replay_stretches(replace(log, y=y), TABLE).cause != "sample_not_logged"
+
+
+def test_a_sensor_that_stands_in_the_log_alone_is_told_with_its_times_and_nobody_is_accused() -> None:
+    log = default_flight()
+    rows = slice(2500, 2700)
+    y = log.y.copy()
+    y[rows, 0] = y[rows.start, 0]
+    found = replay_stretches(replace(log, y=y), TABLE)
+    assert np.ptp(log.y[rows, 0]) > 0.0
+    assert found.cause == "missing_rows"
+    assert "psi_rad stands from 25" in (found.sentence or "")
+    assert "psi_rad stands" in (found.sentence or "")
+    assert not differs(found.record())
+
+
+def test_a_firmware_that_went_wrong_in_a_hold_is_not_cleared_by_it() -> None:
+    """Noise on the law's answer from a hold on: the readings stand, and what follows is no answer of the law either."""
+    log = default_flight()
+    u = log.u.copy()
+    u[2500:, 0] += np.random.default_rng(4).normal(0.0, 0.01, len(u) - 2500)
+    found = replay_stretches(replace(log, u=u), TABLE)
+    assert found.cause == "not_found"
+    assert differs(found.record())
