@@ -21,7 +21,6 @@ from design.pole_placement import (
     refined,
 )
 from design.settings import AxisSettings, DesignSettings
-from design.structure import measured_axis
 from design.transfer import TransferFunction, transfer_function
 from records.errors import BadInput
 from records.loops import Loop
@@ -67,8 +66,8 @@ def rest(bound: BoundPlant, settings: DesignSettings, psi_rad: float) -> Operati
         return rest_with(bound, wiring(bound, settings.loops).outputs, middles)
     if schedule is None:
         return equilibrium(bound)
-    scheduling = measured_axis(bound.model, settings.loop(schedule.axis))
-    return equilibrium(bound, *(psi_rad if axis is scheduling else 0.0 for axis in arms))
+    scheduling = settings.loop(schedule.axis)
+    return rest_with(bound, wiring(bound, (scheduling,)).outputs, (psi_rad,))
 
 
 def equilibria(bound: BoundPlant, settings: DesignSettings, psi_rad: Array) -> tuple[OperatingPoint, ...]:

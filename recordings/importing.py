@@ -67,7 +67,8 @@ def log_of_contents(
     if stated not in (None, *LOOPS):
         raise BadInput("text 'loop'", where, repr(stated), " or ".join(LOOPS), "say it with --loop")
     log = log_of_channels(channels, columns, where, span=part, loop=stated)
-    log = replace(log, locked=tuple(facts.get("locked", ())), table_digest=facts.get("table_digest"))
+    log = replace(log, locked=tuple(facts.get("locked", ())))
+    log = replace(log, table_digest=facts.get("table_digest"), arithmetic=facts.get("arithmetic"))
     used = replace(
         mapping, plant=columns.plant, columns={**_time(mapping), **{name: entry.text for name, entry in found.items()}}
     )

@@ -87,12 +87,11 @@ def overview(contents: Contents) -> list[tuple[str, ...]]:
 def likeness(column: str, name: str, signal: Signal) -> float:
     """How much a signal looks like a column, 0 to 1: by words, and by a unit that fits; 0 for a unit that does not."""
     name = re.sub(r"\([:,\d]+\)$", "", name)
-    suffix = suffix_of(name)
     fits = _fits(column, name, signal)
     if fits is False:
         return 0.0
     own = _words(column.removesuffix(f"_{unit_suffix(column)}"))
-    other = _words(f"{signal.heading} {name}" if signal.heading else name.removesuffix(f"_{suffix}"))
+    other = _words(f"{signal.heading} {name}" if signal.heading else name.removesuffix(suffix_of(name)))
     if not own or not other:
         return 0.0
     score = sum(max(_same(word, another) for another in other) for word in own) / max(len(own), 1)

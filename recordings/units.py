@@ -7,6 +7,11 @@ from math import pi
 
 from records.text.units import dimension
 
+# As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
+TIME_NAMES = frozenset(
+    "t time times tout timestamp timestamps time_stamp stamp elapsed elapsed_time datenum zeit temps tiempo tempo".split()  # noqa: SIM905
+)
+
 
 @dataclass(frozen=True)
 class Unit:
@@ -77,8 +82,8 @@ UNITS = (
     Unit("s", 1e-3, ("ms", "msec", "millis", "millisecond", "milliseconds"), ("ms", "msec", "millis")),
     Unit("s", 1e-6, ("us", "µs", "μs", "usec", "micros", "microsecond", "microseconds"), ("us", "usec", "micros")),
     Unit("s", 1e-9, ("ns", "nsec", "nanos", "nanosecond", "nanoseconds"), ("ns", "nsec", "nanos")),
-    Unit("s", 60.0, ("min", "minute", "minutes"), ("minutes",)),
-    Unit("s", 3600.0, ("h", "hour", "hours"), ("hours",)),
+    Unit("s", 60.0, ("min", "mins", "minute", "minutes"), ("minutes",)),
+    Unit("s", 3600.0, ("h", "hr", "hrs", "hour", "hours"), ("hours",)),
     Unit("s", 86400.0, ("day", "days"), ("days",)),
     Unit("1", 1.0, ("1", "-", "none", "dimensionless", "n/a"), ()),
     Unit("1", 1e-2, ("%", "percent", "pct"), ("percent", "pct")),
@@ -94,18 +99,38 @@ def known(spelling: str) -> Unit | None:
 
 
 def suffix_of(name: str) -> str:
-    """The unit that a name ends in, as it stands there: "deg" of run1.psi_deg, "deg_s" of q_deg_s, empty where it ends in none."""
-    tokens = re.sub(r"[\[(]\d+[\])]$", "", re.split(r"[./\\]", name)[-1]).split("_")
+    """The unit that a name ends in: "deg" of run1.psi_deg, psiDeg and psi.deg, "deg_s" of q_deg_s, empty where it ends in none."""
+    return _parted(name)[1]
+
+
+def without_suffix(name: str) -> str:
+    """The last part of a name without the unit that it ends in: "psi" of run1.psi_deg and psiDeg."""
+    return _parted(name)[0]
+
+
+def _parted(name: str) -> tuple[str, str]:
+    """The last part of a name without its unit, and that unit."""
+    *path, last = re.split(r"[./\\]", name)
+    last = re.sub(r"[\[(]\d+[\])]$", "", last)
+    tokens = last.split("_")
     for count in (2, 1):
         suffix = "_".join(tokens[-count:])
         if len(tokens) > count and suffix in _BY_SUFFIX:
-            return suffix
-    return ""
+            return "_".join(tokens[:-count]), suffix
+    if path and len(last) > 2 and last in _BY_SUFFIX:  # {"psi": {"deg": 11.5}}; log.um is a name
+        return last, last
+    humped = re.fullmatch(r"(.*[a-z0-9])([A-Z][a-z]+)", last)
+    if humped and humped[2].lower() in _BY_SUFFIX:
+        return humped[1], humped[2].lower()
+    return last, ""
 
 
 def unit_of_clock(name: str) -> str:
-    """The unit that is all of a clock's name: "millis" of run1.millis, empty where it is none; of one letter it may be anything."""
+    """The unit of a clock's name: "millis" of run1.millis, "h" of time_h, empty where it is none; one letter alone may be anything."""
     last = re.split(r"[./\\]", name)[-1]
+    stem, _, ending = last.rpartition("_")
+    if stem.lower() in TIME_NAMES and ending in _BY_SPELLING and _BY_SPELLING[ending].si == "s":
+        return ending
     return last if len(last) > 1 and last in _BY_SUFFIX and _BY_SUFFIX[last].si == "s" else ""
 
 

@@ -22,6 +22,8 @@ from records.text.reading import read_toml
 
 SCHEMA = "run-log/1"
 LOOPS = ("open", "closed")
+DOUBLE = "float64"
+ARITHMETICS = (DOUBLE, "float32", "fixed")
 Array = NDArray[np.float64]
 
 
@@ -50,7 +52,8 @@ class RunLog:
     """A run of n samples: y[k] measured at t_s[k], u[k] commanded from then until t_s[k + 1], after the controller's limits.
 
     Shapes: t_s (n,), u (n, inputs), y (n, outputs; NaN where nothing was measured), `extra` optional columns (n,), `seq` (n,) the
-    board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none;
+    board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none, and
+    `arithmetic` in which its law computed: DOUBLE is a simulation's own, in which no firmware flew; None where nobody said.
     `source` the published recording that the log was imported from, None for a log of this project's own making; `restarts` are where
     another recording of the same file begins, whose times are counted on; `late_inputs` begin behind a recording's first row.
     """
@@ -65,6 +68,7 @@ class RunLog:
     seq: NDArray[np.int64] | None = None
     locked: tuple[str, ...] = ()
     table_digest: str | None = None
+    arithmetic: str | None = None
     source: Source | None = None
     restarts: tuple[Restart, ...] = ()
     late_inputs: tuple[LateInput, ...] = ()
@@ -120,14 +124,15 @@ def sidecar_text(log: RunLog) -> str:
     document["loop"] = log.loop
     document["locked"] = list(log.locked)
     if log.table_digest is not None:
-        document["controller"] = {"table_digest": log.table_digest}
+        stated = {} if log.arithmetic is None else {"arithmetic": log.arithmetic}
+        document["controller"] = {"table_digest": log.table_digest} | stated
     if log.source is not None:
         document["source"] = source_table(log.source)
     return tomlkit.dumps(document)
 
 
 def facts_of_sidecar(text: str, where: str, columns: LogColumns) -> dict[str, Any]:
-    """`loop`, `locked` and `table_digest` of a sidecar's text, by these names; none of a text that is no sidecar.
+    """`loop`, `locked`, `table_digest` and `arithmetic` of a sidecar's text, by these names; none of a text that is no sidecar.
 
     Raises BadInput for a sidecar of another plant, or one that is wrong.
     """
@@ -137,8 +142,8 @@ def facts_of_sidecar(text: str, where: str, columns: LogColumns) -> dict[str, An
         return {}
     if sidecar.get("schema") != SCHEMA:
         return {}
-    digest = _check_sidecar(sidecar, where, columns)
-    return {"loop": sidecar["loop"], "locked": tuple(sidecar["locked"]), "table_digest": digest}
+    flown = _check_sidecar(sidecar, where, columns)
+    return {"loop": sidecar["loop"], "locked": tuple(sidecar["locked"]), **flown}
 
 
 def load_log(path: Path, columns: LogColumns) -> RunLog:
@@ -150,7 +155,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = _sidecar(path)
-    controller = _check_sidecar(sidecar, str(sidecar_path), columns)
+    flown = _check_sidecar(sidecar, str(sidecar_path), columns)
     names, rows = read_rows(path, lambda header: _check_columns(header, str(path), columns))
     data = {name: rows[:, index] for index, name in enumerate(names)}
     begins = restart_rows(data["t_s"])
@@ -172,7 +177,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         extra={name: data[name].copy() for name in names if name in columns.optional},
         seq=seq,
         locked=tuple(sidecar["locked"]),
-        table_digest=controller,
+        **flown,
         source=parse_source(sidecar["source"], f"{sidecar_path}: source") if "source" in sidecar else None,
         restarts=restarts,
         late_inputs=late_inputs,
@@ -212,8 +217,8 @@ def _sidecar(path: Path) -> Mapping[str, Any]:
     return read_toml(path.with_suffix(".toml"), "sidecar of the run log", beside)
 
 
-def _check_sidecar(sidecar: Mapping[str, Any], where: str, columns: LogColumns) -> str | None:
-    """Check every key; returns the digest of the controller table, if one is named."""
+def _check_sidecar(sidecar: Mapping[str, Any], where: str, columns: LogColumns) -> dict[str, str | None]:
+    """Check every key; returns `table_digest` and `arithmetic` of the controller that flew, None where they are not named."""
     checks.schema(sidecar, f"{where}: schema", SCHEMA)
     checks.keys(sidecar, where, ("schema", "plant", "sample_period_s", "loop", "locked"), ("controller", "source"))
     if checks.text(sidecar["plant"], f"{where}: plant") != columns.plant:
@@ -229,10 +234,14 @@ def _check_sidecar(sidecar: Mapping[str, Any], where: str, columns: LogColumns) 
     if not isinstance(locked, list) or any(axis not in columns.axes for axis in locked):
         raise BadInput("locked", where, repr(locked), f"a list of {', '.join(columns.axes)}", "name axes of this plant")
     if "controller" not in sidecar:
-        return None
+        return {"table_digest": None, "arithmetic": None}
     controller = checks.table(sidecar["controller"], f"{where}: controller")
-    checks.keys(controller, f"{where}: controller", ("table_digest",))
-    return checks.text(controller["table_digest"], f"{where}: controller.table_digest")
+    checks.keys(controller, f"{where}: controller", ("table_digest",), ("arithmetic",))
+    digest, arithmetic = controller["table_digest"], controller.get("arithmetic")
+    if arithmetic not in (None, *ARITHMETICS):
+        expected, remedy = " or ".join(map(repr, ARITHMETICS)), "say in which arithmetic the law computed, or remove it"
+        raise BadInput("arithmetic", f"{where}: controller", repr(arithmetic), expected, remedy)
+    return {"table_digest": checks.text(digest, f"{where}: controller.table_digest"), "arithmetic": arithmetic}
 
 
 def _check_columns(names: tuple[str, ...], where: str, columns: LogColumns) -> None:

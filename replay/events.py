@@ -6,7 +6,7 @@ An incident is accepted only when the law, run on behind it, meets the log again
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -96,6 +96,8 @@ class Follower:
         self.inputs = workshop.inputs(setup)
         self._wanted, self._slack = workshop.answers(setup)
         self._loops = setup.loops
+        measured = ~np.isnan(self._flight.logged_V).any(axis=1)
+        self._lacks = np.isnan(self._flight.angle_rad[measured]).any(axis=0)
         self._late = np.array([setup.reference_lag] * self._loops + list(each(setup.angle_lags, self._loops))) > 0
 
     def follow(self) -> Trace:
@@ -160,6 +162,7 @@ class Follower:
     def _hypotheses(self, row: int, state: Any, last_gap: _Gap | None) -> Iterator[_Hypothesis]:
         if row == len(self.inputs) or row == 0:
             return
+        yield from self._never_read(row, state)
         yield from self._held(row, state)
         yield _Hypothesis(RESET, row, row, self._law.start(self.inputs[row, self._loops :]))
         for kind, columns in (
@@ -171,6 +174,18 @@ class Follower:
             yield from self._given(state, (row, row + 1), candidates_for_unmeasured(self._flight, row))
         if last_gap is not None and row <= last_gap[1][1] + 2:
             yield from self._not_logged(row, last_gap)
+
+    def _never_read(self, row: int, state: Any) -> Iterator[_Hypothesis]:
+        """A zero in a column that lacks readings: it may have been written down for none, beside zero where nobody sees it."""
+        angle_rad = self._flight.angle_rad
+        written = self._lacks & (angle_rad[row] == 0.0)
+        if not written.any():
+            return
+        angle_rad = angle_rad.copy()
+        angle_rad[row, written] = np.nan
+        candidates = candidates_for_unmeasured(replace(self._flight, angle_rad=angle_rad), row)
+        none = np.concatenate([np.zeros(self._loops, bool), written])
+        yield from self._given(state, (row, row + 1), candidates, none)
 
     def _held(self, row: int, state: Any) -> Iterator[_Hypothesis]:
         """The output stayed as it was: the law's frame was lost, or the law was not called."""
@@ -208,12 +223,17 @@ class Follower:
         yield _Hypothesis(UNLOGGED, first, behind, self._law.copied(state))
         yield from self._given(state, (first, behind), candidates_for_missing(self._flight, (first, behind)))
 
-    def _given(self, state: Any, rows: tuple[int, int], candidates: Iterable[Array]) -> Iterator[_Hypothesis]:
-        """The law's state behind `rows` for each candidate of what it was given there, if its answers agree with the log's."""
+    def _given(
+        self, state: Any, rows: tuple[int, int], candidates: Iterable[Array], none: NDArray[np.bool_] | bool = False
+    ) -> Iterator[_Hypothesis]:
+        """The law's state behind `rows` for each candidate of what it was given there, if its answers agree with the log's.
+
+        Candidates stand for what is not a number, and for the columns `none` (2 loops).
+        """
         first, behind = rows
         for candidate in candidates:
             changed, moved = self.inputs[first:behind].copy(), self._law.copied(state)
-            gaps = np.isnan(changed)
+            gaps = np.isnan(changed) | none
             changed[gaps] = candidate.astype(changed.dtype)[gaps]
             if self._law.run(moved, (0, behind - first), changed, *self._between(first, behind)) == behind - first:
                 yield _Hypothesis(UNLOGGED, first, behind, moved)

@@ -15,21 +15,26 @@ from numpy.typing import NDArray
 
 from records.diagnosis import Firmware
 from records.errors import BadInput
-from records.log import RunLog
+from records.log import DOUBLE, RunLog
 from records.table import ControllerTable
 from records.text.units import units_of
 from replay.arithmetic import FIXED, Replayed, replayed, replayed_in_fixed
 from replay.events import UNLOGGED
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
+from replay.law import FLOAT32, FLOAT64
 from replay.printed import agrees_as_printed
 from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channel_cause, explain
 
 NOT_FOUND = "not_found"
+IN_DOUBLE = "flown_in_double"
+AGREES_IN_DOUBLE = (
+    "the law flew in double precision, as the log says, and no firmware did; run again in it, it agrees within rounding"
+)
 IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"
 ROUNDING_V = 1e-3
 BEHIND_LIMIT = 2  # rows off the limits after which what they did to the law's state shows in its answer
 # What is the log's doing alone: but for what it lacks, or holds twice, the firmware did as its table says.
-CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED)
+CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, IN_DOUBLE)
 NINE_DIGITS = "print nine digits, which hold all of a float32"
 ANGLES_ROUNDED = f"the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees: {NINE_DIGITS}"
 
@@ -89,7 +94,8 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
         return FirmwareReplay(True, True, None, None, None, residuals)
     within_V = agrees_as_printed(flight, table)
     as_printed = None if within_V is None else Told(LOG_ROUNDING, _as_printed(flight, within_V))
-    told = explain(flight, table, others, as_printed)
+    in_double = log.arithmetic == DOUBLE
+    told = explain(flight, table, others, as_printed, FLOAT64 if in_double else FLOAT32)
     if told is None:
         behind_fixed = _behind_fixed(flight, table, residuals, at_s)
         if behind_fixed is not None:
@@ -99,6 +105,8 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
         )
     if told.cause is None and at_s is None:
         return FirmwareReplay(True, True, None, None, None, residuals)
+    if told.cause is None and in_double:
+        return FirmwareReplay(True, False, None, IN_DOUBLE, AGREES_IN_DOUBLE, residuals)
     if told.cause is None:
         return FirmwareReplay(True, False, at_s, LOG_ROUNDING, ANGLES_ROUNDED, residuals)
     return FirmwareReplay(True, False, at_s, told.cause, told.sentence, residuals, told.incidents, told.alternatives)

@@ -25,7 +25,8 @@ class ReplayedLog:
     """Samples k = 0..n-1: references and angles (n, loops) in rad, logged inputs in V and their rounding `half_step_V`, alike.
 
     A sample that the log lacks has NaN everywhere; where it lacks too many (`lacking`), rows stand as they come.
-    `printings` are those of the inputs, of the references and of the angles, each in the order of the loops.
+    `printings` are those of the inputs, of the references and of the angles, each in the order of the loops. Angles that are whole steps
+    of their sensor, `in_steps` (loops), are as they were measured: what few digits they have is the sensor's doing.
     """
 
     t_s: Array
@@ -39,13 +40,19 @@ class ReplayedLog:
     rows: NDArray[np.int64]
     input_names: tuple[str, ...]
     lacking: int
+    in_steps: tuple[bool, ...]
 
     @property
     def reference_half_step_rad(self) -> Array:
-        """How far printing may have moved each reference (n, loops): a few numbers tell no digits, those of its angle do."""
-        columns = zip(self.reference_rad.T, self.reference_printings, self.angle_printings, strict=True)
+        """How far printing may have moved each reference (n, loops): a few numbers tell no digits, those of its angle do, or of its
+        input where the angle's are its sensor's."""
+        beside = [
+            given if steps else angle
+            for given, angle, steps in zip(self.input_printings, self.angle_printings, self.in_steps, strict=True)
+        ]
+        columns = zip(self.reference_rad.T, self.reference_printings, beside, strict=True)
         return np.column_stack(
-            [np.maximum(own.half_step(column), angle.half_step(column)) for column, own, angle in columns]
+            [np.maximum(own.half_step(column), other.half_step(column)) for column, own, other in columns]
         )
 
     @property
@@ -97,7 +104,10 @@ def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
     columns = [log.u[:, inputs], references, log.y[:, outputs]]
     n = int(samples[-1]) + 1
     u_V, reference_rad, angle_rad = (_spread(column, samples, n) for column in columns)
-    written = tuple(printing(column) for block in columns for column in block.T)
+    steps_rad = tuple(axis.resolution_rad for axis in table.axes)
+    in_steps = tuple(_in_steps(column, step) for column, step in zip(columns[2].T, steps_rad, strict=True))
+    angles = (Printing() if steps else printing(column) for column, steps in zip(columns[2].T, in_steps, strict=True))
+    written = (*(printing(column) for block in columns[:2] for column in block.T), *angles)
     return ReplayedLog(
         t_s=np.interp(np.arange(n), samples, log.t_s),
         reference_rad=reference_rad,
@@ -107,11 +117,20 @@ def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
         * PRINT_MARGIN,
         missing=_blocks(np.isnan(u_V[:, 0])),
         printings=written,
-        steps_rad=tuple(axis.resolution_rad for axis in table.axes),
+        steps_rad=steps_rad,
         rows=samples,
         input_names=tuple(loop.input for loop in loops),
         lacking=lacking,
+        in_steps=in_steps,
     )
+
+
+def _in_steps(angle_rad: Array, step_rad: float) -> bool:
+    """Whether all angles (n,) are whole steps of their sensor, to the digits of float32: then none was lost in writing them down."""
+    if not step_rad:
+        return False
+    off = np.abs(angle_rad - np.round(angle_rad / step_rad) * step_rad)
+    return bool(np.all(np.isnan(off) | (off <= np.spacing(np.abs(angle_rad).astype(np.float32)))))
 
 
 def readings(flight: ReplayedLog) -> tuple[ReplayedLog, ...]:

@@ -91,12 +91,14 @@ def explain(
     table: ControllerTable,
     others: Sequence[ControllerTable] = (),
     as_printed: Told | None = None,
+    arithmetic: str = FLOAT32,
 ) -> Told | None:
     """The simplest firmware that leaves no difference: the table's law with incidents, one change, a fused build, two changes.
 
-    None where none was found. `as_printed` is what is told of a log whose digits do not tell another law from the table's.
+    None where none was found. `as_printed` is what is told of a log whose digits do not tell another law from the table's; `arithmetic`
+    is that in which the law flew.
     """
-    base = Setup(table)
+    base = Setup(table, arithmetic=arithmetic)
     shops = [Workshop(reading) for reading in readings(flight)]
     for shop in shops:
         found = _exact(shop, base, [()])

@@ -18,7 +18,7 @@ from records.text.units import units_of
 from replay import thresholds
 from replay.arithmetic import replayed
 from replay.events import Workshop
-from replay.firmware import CLEARED, FirmwareReplay, demand_own, replay_firmware
+from replay.firmware import CLEARED, NOT_FOUND, FirmwareReplay, demand_own, replay_firmware
 from replay.flight import flight_of, has_replayable_columns
 from replay.midair import begins_in_flight
 from replay.search import MISSING_ROWS
@@ -39,21 +39,62 @@ class _Behind:
 def replay_stretches(
     log: RunLog, table: ControllerTable, others: Sequence[ControllerTable] = (), begins: Rows | None = None
 ) -> FirmwareReplay:
-    """`replay_firmware` of a log that is cut where rows or readings are missing, and in front of the rows `begins` (n,)."""
+    """`replay_firmware` of a log that is cut where rows or readings are missing, and in front of the rows `begins` (n,).
+
+    Where no firmware gives what the log holds from within a stand of a sensor on, the stand's readings are left out: if the law goes on
+    behind it, it had others.
+    """
     demand_own(log, table)
+    first, _ = found, followed = _by_stretches(log, table, others, begins)
+    told: list[str] = []
+    while found.cause == NOT_FOUND and len(told) < thresholds.MOST_STANDS:
+        stand = _stand(log, table, found.first_difference_s)
+        if stand is None:
+            break
+        log = stand[0]
+        told.append(stand[1])
+        found, followed = _by_stretches(log, table, others, begins)
+    if not told or found.cause not in CLEARED or not followed:
+        return first
+    return replace(found, sentence="; ".join([*told, found.sentence or ""]))
+
+
+def _stand(log: RunLog, table: ControllerTable, at_s: float | None) -> tuple[RunLog, str] | None:
+    """The log without the readings of an output that stands where the replay first differs, and its sentence; None where none does."""
+    if at_s is None or not has_replayable_columns(log, table):
+        return None
+    row = int(np.argmin(np.abs(log.t_s - at_s)))
+    for loop in table.loops:
+        place = log.columns.outputs.index(loop.output)
+        y = log.y[:, place]
+        same = np.concatenate([[False], y[1:] == y[:-1]])
+        for run in _runs(same):
+            if run.start <= row <= run.stop and run.stop - run.start > thresholds.MOST_UNREAD:
+                left = log.y.copy()
+                left[run, place] = np.nan
+                times = f"from {log.t_s[run.start]:.6g} s to {log.t_s[run.stop - 1]:.6g} s"
+                return replace(log, y=left), f"{loop.output} stands {times}, where the law had other readings"
+    return None
+
+
+def _by_stretches(
+    log: RunLog, table: ControllerTable, others: Sequence[ControllerTable], begins: Rows | None
+) -> tuple[FirmwareReplay, bool]:
+    """What is told of the stretches together, and whether the law is known to agree behind every break."""
     parts = list(_parts(log, begins))
     if len(parts) < 2 or not has_replayable_columns(log, table):
-        return replay_firmware(log, table, others)
+        return replay_firmware(log, table, others), True
     first = replay_firmware(part(log, parts[0]), table, others)
     if not first.bit_exact and first.cause not in CLEARED:
-        return first
+        return first, True
     behind = [_behind(part(log, rows), table) for rows in parts[1:]]
     end_s, unit = float(log.t_s[parts[0].stop - 1]), units_of(loop.input for loop in table.loops)
     sentence = f"rows or readings are missing behind {end_s:.6g} s; up to there the firmware is cleared"
     sentence += "".join(f", {_in_words(entry, unit)}" for entry in behind)
     if first.sentence is not None:
         sentence = f"{first.sentence}; {sentence}"
-    return replace(first, bit_exact=False, cause=MISSING_ROWS, sentence=sentence)
+    followed = all(entry.since_s is not None for entry in behind)
+    return replace(first, bit_exact=False, cause=MISSING_ROWS, sentence=sentence), followed
 
 
 def _in_words(entry: _Behind, unit: str) -> str:

@@ -66,6 +66,9 @@ MOST_UNREAD = Count(10, "rows", "more rows in a row that lack a reading leave th
 LOG10_RANGE_S = Limits((-2.5, 1.0), "log10 s", "time constants tried")
 WRITTEN_DIGITS = Counts((1, 2, 3, 4, 6), "digits", "a time constant is tried with few digits, as people write it")
 
+# stretches
+MOST_STANDS = Count(3, "stands", "of a sensor that are left out to follow the law behind them")
+
 # digits
 MOST_DECIMALS = Count(7, "decimals", "more reproduce any voltage or angle of a float32 law", "exact")
 MOST_DIGITS = Count(8, "digits", "nine significant digits give every float32 back", "exact")

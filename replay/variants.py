@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Change = Callable[[Setup], Setup]
 Round = Callable[[float], float]
 
+LATE_OUTPUT = "late_output"
 COUNTED = ("no", "one", "two", "three", "four", "five")
 
 
@@ -65,7 +66,8 @@ def _timing(table: ControllerTable) -> Iterator[Variant]:
         yield Variant(
             "stale_reference", "references", f"used references {what} old", partial(replace, reference_lag=samples)
         )
-        yield Variant("late_output", "output", f"sent its output {what} late", partial(replace, output_lag=samples))
+        late = f"sent its output {what} late, or the log has it so"
+        yield Variant(LATE_OUTPUT, "output", late, partial(replace, output_lag=samples))
     yield Variant(
         "early_output", "output", "has each output logged one row before its angles", partial(replace, output_lag=-1)
     )

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,10 @@ STEP_TOLERANCE = 1e-14
 FILLED = (0.5, 0.1)  # how far above a wanted output states of its unit are tried, the first the farthest
 RATE_TOLERANCE = 1e-6  # of a rate at a rest point; where there is none, the least rate is far larger
 Array = NDArray[np.float64]
+
+
+class NoRestPoint(BadInput):
+    """Positions at which no inputs hold the axes, whatever their limits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +53,12 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     starts = (commands @ np.array([1.0 - share, share]) for share in STARTS)
     found = next(filter(None, (_solve(bound, *_begin(bound, x, u, positions_rad)) for u in starts)), None)
     if found is None:
-        raise BadInput(
+        raise NoRestPoint(
             "equilibrium",
             _place(bound, positions_rad),
             "no solution of f(x, u) = 0",
             "a rest point",
-            "check the parameters of rotors and gravity",
+            "check the parameters, and whether its inputs can hold it there",
         )
     x0, u0 = found
     _check_inputs(bound, u0, _place(bound, positions_rad))
@@ -62,14 +66,33 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
 
 
 def rest_with(bound: BoundPlant, places: Sequence[int], values: Sequence[float]) -> OperatingPoint:
-    """The rest point with the outputs at `places` at these values: of axes with a position by that, all others at 0, and of a plant
-    without one, a tank or a coil, by what it measures. Raises BadInput where there is none, or it needs an input beyond its limits.
+    """The rest point with the outputs at `places` at these values: of axes with a position by that, all others at 0, or where that is
+    no rest point (a pulley behind a belt) wherever they come to rest; and of a plant without one, a tank or a coil, by what it measures.
+
+    Raises BadInput where there is none, or it needs an input beyond its limits.
     """
     wanted = dict(zip(places, values, strict=True))
     outputs = list(bound.model.outputs.values())
     at = {outputs[place]: value for place, value in wanted.items()}
-    arms = [axis.position for axis in bound.model.axes if axis.position is not None]
-    return equilibrium(bound, *(at.get(position, 0.0) for position in arms)) if arms else _measured(bound, wanted)
+    arms = [axis for axis in bound.model.axes if axis.position is not None]
+    if not arms:
+        return _measured(bound, wanted)
+    try:
+        return equilibrium(bound, *(at.get(axis.position, 0.0) for axis in arms))
+    except NoRestPoint:
+        if all(axis.position in at for axis in arms):
+            raise
+        with suppress(BadInput):
+            return _within_stops(bound, arms, _measured(bound, wanted))
+        raise
+
+
+def _within_stops(bound: BoundPlant, arms: Sequence[Axis], point: OperatingPoint) -> OperatingPoint:
+    """The point, `psi_rad` its first axis' position; raises BadInput where an axis lies beyond a stop."""
+    at = {axis.name: float(point.x0[bound.model.states.index(axis.position)]) for axis in arms}
+    for axis in arms:
+        _check_stops(bound, axis, at[axis.name])
+    return replace(point, psi_rad=at[arms[0].name])
 
 
 def _measured(bound: BoundPlant, wanted: Mapping[int, float]) -> OperatingPoint:

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import VerificationFailed
-from records.log import RunLog
+from records.log import DOUBLE, RunLog
 from records.logs.live import LiveRow
 from records.table import ControllerTable
 from sim.bind import BoundPlant
@@ -58,11 +59,13 @@ def fly(
     manoeuvre: Manoeuvre,
     *,
     table_digest: str | None = None,
+    arithmetic: str | None = None,
     substeps: int = 1,
 ) -> RunLog:
     """Fly a manoeuvre: at each t_k measure through the encoders, step the controller, hold its inputs until t_(k+1).
 
-    Raises VerificationFailed when the controller commands what is not a number. `table_digest` names the table that flies.
+    Raises VerificationFailed when the controller commands what is not a number. `table_digest` names the table that flies,
+    `arithmetic` in which its law computes.
     """
     plant = SteppedPlant(bound, manoeuvre.x0, float(manoeuvre.t_s[0]))
     y, u = np.empty(manoeuvre.reference_rad.shape), np.empty((manoeuvre.t_s.size, len(bound.model.inputs)))
@@ -75,7 +78,7 @@ def fly(
         u[k] = command
         if k + 1 < manoeuvre.t_s.size:
             plant.advance(command, float(manoeuvre.t_s[k + 1]), substeps)
-    return closed_loop_log(bound, manoeuvre, u, y, table_digest)
+    return replace(closed_loop_log(bound, manoeuvre, u, y, table_digest), arithmetic=arithmetic)
 
 
 def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, substeps: int = 1) -> RunLog:
@@ -88,7 +91,7 @@ def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, 
     )
     assert runs.u is not None
     assert runs.y is not None
-    return closed_loop_log(bound, manoeuvre, runs.u, runs.y, table.digest)
+    return replace(closed_loop_log(bound, manoeuvre, runs.u, runs.y, table.digest), arithmetic=DOUBLE)
 
 
 def closed_loop_log(bound: BoundPlant, manoeuvre: Manoeuvre, u: Array, y: Array, table_digest: str | None) -> RunLog:

@@ -264,6 +264,20 @@ return Model(
 """,
 )
 
+# Its load hangs on a spring from where the motor stands, and is measured too; a weight stretches the spring.
+HANGING = OwnPlant(
+    ELASTIC.parameters,
+    {**ENCODER, "delta_rad": 1.5e-3},
+    ELASTIC.body.replace('p["k"] * delta', 'p["k"] * (delta - theta)')
+    .replace("delta: w - omega", "delta: w")
+    .replace("-spring - p", "-spring - p['G'] - p")
+    .replace('outputs={"theta_rad": theta}', 'outputs={"theta_rad": theta, "delta_rad": delta}')
+    .replace(
+        'SensorPlace("theta_rad", "rad")}',
+        'SensorPlace("theta_rad", "rad"), "delta_sensor": SensorPlace("delta_rad", "rad")}',
+    ),
+)
+
 WORKING: Mapping[str, OwnPlant] = {
     "coil": NO_AXIS,
     "plain": PLAIN,

@@ -53,6 +53,19 @@ class Point:
         return np.asarray((H + H.T) / 2.0 + ROUNDING * np.diag(np.diag(self.JtJ)))
 
 
+def growth(point: Point) -> float:
+    """How far the slopes by a window's start grow within it, times their first: exp(lambda t) of an unstable plant, at most.
+
+    A slope's square and its rounding go into (1): beyond 1 / sqrt(`ROUNDING`) what is left of H is rounding.
+    """
+    most = 1.0
+    for run, own in zip(point.runs, point.blocks, strict=True):
+        for block in own:
+            first = np.max(np.abs(block.by_start[: run.outputs]), initial=0.0)
+            most = max(most, np.max(np.abs(block.by_start), initial=0.0) / first if first > 0.0 else 1.0)
+    return float(most)
+
+
 def at(problem: Problem, theta: Array, runs: tuple[Run, ...]) -> Point:
     """Cost and normal equations at theta; a motion that leaves the range of numbers costs infinitely much."""
     size = len(problem.names)

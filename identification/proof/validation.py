@@ -8,7 +8,7 @@ import numpy as np
 from design.law import FloatLaw
 from design.settings import read_settings
 from design.table import design
-from records.log import RunLog
+from records.log import DOUBLE, RunLog
 from records.loops import LOOPS
 from records.table import ControllerTable
 from sim.bind import BoundPlant
@@ -41,4 +41,4 @@ def _flown(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre) -> R
     if is_kernel_s(table):
         return fly_law(bound, table, manoeuvre)
     law = Wired(FloatLaw(table), wiring(bound, table.loops))
-    return fly(bound, law, manoeuvre, table_digest=table.digest)
+    return fly(bound, law, manoeuvre, table_digest=table.digest, arithmetic=DOUBLE)

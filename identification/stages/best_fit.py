@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.fit.belief import Belief
-from identification.fit.normal_equations import Point
+from identification.fit.normal_equations import ROUNDING, Point
 from identification.fit.problem import Prior, Problem
 from identification.fit.solve import solve
 from identification.runs.run import Run
@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 WORSE, MOST_LEFT = 1.5, 0.3
 SENSORS = 1.1  # times what a sensor alone leaves: as good as that
 DIGITS = 1e-12  # of an estimate, below which runs in double precision, in steps, tell nothing
+MOST_GROWTH = ROUNDING**-0.5  # of a window's slopes: beyond it the rounding of their squares outweighs a first reading
 NEARLY = 2.0  # times that from a fit that has not settled
 
 
@@ -26,7 +27,8 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
 
     Over long windows a fit may have caught a wrong phase, or nothing at all, or what the model lacks has grown into its parameters: one
     that predicts the shortest windows clearly worse than the best does not count, nor one that leaves more than `MOST_LEFT` of what its
-    own readings do, nor one that contradicts the shortest windows by more than both intervals allow.
+    own readings do, nor one that contradicts the shortest windows by more than both intervals allow, nor one within whose windows an
+    unstable plant has carried the slopes past all digits.
     """
     if len(found) == 1:
         return found[0]
@@ -35,6 +37,7 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
         entry
         for entry, cost in zip(found, costs, strict=True)
         if cost <= WORSE**2 * min(costs)
+        and entry.growth <= MOST_GROWTH
         and all(test.fit > 1.0 - MOST_LEFT or _of_the_sensor(test) for test in entry.residuals)
         and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
     ]
@@ -52,7 +55,7 @@ def nothing_left(whole: Estimate) -> bool:
     Of an unstable plant that is no proof: slopes that have grown past all digits claim what no arithmetic could tell.
     """
     part = whole.belief.part(whole.own)
-    is_told = bool(np.all(part.sd > DIGITS * np.abs(part.mean)))
+    is_told = whole.growth <= MOST_GROWTH and bool(np.all(part.sd > DIGITS * np.abs(part.mean)))
     return is_told and all(test.white and _of_the_sensor(test) for test in whole.residuals)
 
 

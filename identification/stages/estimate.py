@@ -9,7 +9,7 @@ from scipy.special import stdtrit
 
 from identification.fit.belief import Belief, prior, widened
 from identification.fit.information import inverse, marginal
-from identification.fit.normal_equations import Point
+from identification.fit.normal_equations import ROUNDING, Point, growth
 from identification.fit.problem import Problem, Told, by_name
 from identification.fit.ranges import Range
 from identification.fit.solve import Watch, solve
@@ -32,7 +32,8 @@ class Estimate:
     """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests.
 
     `at_bound` names parameters that ended at a bound of their range: the data pull them further, and their intervals mean little.
-    `discords` name those in which runs that were fitted together contradict one another. `start` is where the fit began, by name.
+    `discords` name those in which runs that were fitted together contradict one another. `start` is where the fit began, by name, and
+    `growth` how far slopes grew within a window.
     """
 
     belief: Belief
@@ -48,6 +49,7 @@ class Estimate:
     start: Mapping[str, float]
     searched: tuple[Searched, ...] = ()
     discords: tuple[Discord, ...] = ()
+    growth: float = 1.0
 
 
 def interval_factor(dof: float) -> float:
@@ -127,12 +129,15 @@ def _estimate(
         start=start,
         searched=searched,
         discords=discords(problem, point),
+        growth=growth(point),
     )
 
 
 def _unseen(problem: Problem, point: Point, own: tuple[str, ...], before: Belief) -> tuple[Direction, ...]:
     """Directions of `own` that neither the data nor what was known before tell."""
-    known = point.H + problem.prior.information - np.diag(_weak(problem, before))
+    # What rounding was given stands for no reading: no direction is known by it.
+    rounding = 2.0 * ROUNDING * np.diag(np.diag(point.JtJ))
+    known = point.H - rounding + problem.prior.information - np.diag(_weak(problem, before))
     places = [problem.names.index(name) for name in own]
     return unseen(own, marginal(known, places, problem.scale), problem.scale[places])
 

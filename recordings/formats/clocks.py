@@ -7,12 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from recordings.signals import Signal
-from recordings.units import known, suffix_of, unit_of_clock
-
-# As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
-TIME_NAMES = frozenset(
-    "t time times tout timestamp timestamps time_stamp stamp elapsed elapsed_time datenum zeit temps tiempo tempo".split()  # noqa: SIM905
-)
+from recordings.units import TIME_NAMES, known, unit_of_clock, without_suffix
 
 
 def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
@@ -34,13 +29,13 @@ def _rises_in_time(signal: Signal) -> bool:
 
 
 def is_time_name(name: str) -> bool:
-    """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `t_s`, `millis`."""
-    last = re.split(r"[./]", name)[-1].lower().strip("_")
-    if unit_of_clock(last):
+    """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `TimeMs`, `t_s`, `millis`."""
+    last = re.split(r"[./]", name)[-1].strip("_")
+    if unit_of_clock(last.lower()):
         return True
-    unit = suffix_of(last)
-    bare = last.removesuffix(f"_{unit}") if unit and (known(unit) or known("s")) else last
-    return bare in TIME_NAMES
+    if last.endswith(("]", ")")):  # one of many
+        return False
+    return not TIME_NAMES.isdisjoint((last.lower(), without_suffix(last.lower()), without_suffix(last).lower()))
 
 
 def _clock_of(name: str, signal: Signal, signals: Mapping[str, Signal], clocks: list[str]) -> str | None:
@@ -48,14 +43,26 @@ def _clock_of(name: str, signal: Signal, signals: Mapping[str, Signal], clocks: 
         return None
     scope = name
     while scope:
-        scope = scope[: max(scope.rfind("."), scope.rfind("/"), 0)]
+        scope = _around(scope)
         beside = [
             clock
             for clock in clocks
-            if clock[: max(clock.rfind("."), clock.rfind("/"), 0)] == scope
-            and signals[clock].values.size in signal.values.shape
+            if _within(clock, signals) == scope and signals[clock].values.size in signal.values.shape
         ]
         exact = [clock for clock in beside if clock.endswith("t_s")] or beside
         if exact:
             return exact[0] if len(exact) == 1 else None
     return None
+
+
+def _around(name: str) -> str:
+    """The structure in which a name lies, empty for none."""
+    return name[: max(name.rfind("."), name.rfind("/"), 0)]
+
+
+def _within(clock: str, signals: Mapping[str, Signal]) -> str:
+    """The innermost structure around a clock that holds anything else: none for the heading Date/Time."""
+    scope = _around(clock)
+    while scope and not any(name != clock and name.startswith((f"{scope}.", f"{scope}/")) for name in signals):
+        scope = _around(scope)
+    return scope

@@ -8,6 +8,8 @@ import numpy as np
 
 from recordings.signals import Signal
 
+FEWEST_ROWS = 10  # a handful of entries are as many motors, say
+
 
 @dataclass(frozen=True)
 class Flat:
@@ -57,9 +59,38 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
         for name, inner in value.items():
             yield from _leaves(inner, f"{path}.{name}" if path else name)
     elif isinstance(value, Sequence) and not isinstance(value, str | bytes):
+        if columns := _columns(value):
+            yield from _leaves(columns, path)
+            return
         for index, inner in enumerate(value, start=1):
             yield from _leaves(inner, f"{path}({index})")
     elif isinstance(value, np.ndarray) and value.dtype == object:
         yield from _leaves(list(value.flat), path)
     else:
         yield path, value
+
+
+def _columns(entries: Sequence[Any]) -> dict[str, Any]:
+    """Entries that are the rows of a log, `log(k).psi` one number each or a word, as its columns; empty for anything else."""
+    if len(entries) < FEWEST_ROWS or not all(isinstance(entry, Mapping) for entry in entries):
+        return {}
+    fields = list(entries[0])
+    if any(list(entry) != fields for entry in entries):
+        return {}
+    columns: dict[str, Any] = {}
+    for name in fields:
+        column = [entry[name] for entry in entries]
+        if all(isinstance(value, str) for value in column):
+            columns[name] = Unreadable("words")
+        elif all(_is_number(value) for value in column):
+            columns[name] = np.array([np.asarray(value, float).item() for value in column])
+        else:
+            return {}
+    return columns
+
+
+def _is_number(value: Any) -> bool:
+    if isinstance(value, str | bytes | Mapping):
+        return False
+    array = np.asarray(value)
+    return array.size == 1 and array.dtype.kind in "biuf"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
 from recordings.signals import Signal
-from recordings.units import known, suffix_of, unit_of_suffix
+from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
 from records.errors import BadInput
 from records.text.units import unit_of, unit_suffix
 
@@ -52,4 +52,4 @@ def _base_in(name: str, signal: Signal, si: str) -> str | None:
     unit = known(signal.unit) if signal.unit else (unit_of_suffix(suffix) if suffix else None)
     if unit is None or unit.si != si or signal.values.ndim != 1:
         return None
-    return last.removesuffix(f"_{suffix}") if suffix else last
+    return without_suffix(last)

@@ -49,7 +49,10 @@ def single(reference: Reference, of: Source) -> Quantity | None:
 
 def unit_for(name: str, signal: Signal, si: str) -> str:
     """The unit of a signal: the stated one, else the one that its name ends in; a single letter that does not fit is no unit."""
-    suffix = suffix_of(name) or (unit_of_clock(name) if si == "s" else "")
+    clocks = unit_of_clock(name) if si == "s" else ""
+    if clocks and not signal.unit.strip():
+        return clocks
+    suffix = suffix_of(name)
     if signal.unit.strip() or not suffix:
         return signal.unit.strip()
     return "" if len(suffix) == 1 and unit_of_suffix(suffix).si != si else suffix

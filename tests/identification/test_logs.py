@@ -20,8 +20,11 @@ from records.log import RunLog
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
+from sim.loop import fly
+from sim.manoeuvres import Manoeuvre
 from sim.simulate import simulate
 from tests.identification.flights import cut, off
+from tests.own_plants import PLAIN
 from tests.soak import SOAK
 
 PLANTS = Path(__file__).parents[2] / "plants"
@@ -38,6 +41,39 @@ def test_an_unstable_plant_in_a_closed_loop_comes_back_within_its_intervals(boun
         sd = float(found.belief.sd[found.belief.names.index(name)])
         assert abs(found.belief.value(name) - bound.parameter(name)) < 4.0 * sd, name
         assert sd < 0.02 * bound.parameter(name), name
+
+
+class Held:
+    """An arm that stands on its hinge, held upright about a slow wave by what it measures and by how that moved."""
+
+    def reset(self, theta_rad: float) -> None:
+        self.before_rad = theta_rad
+
+    def step(self, reference_rad: float, theta_rad: float) -> tuple[float, ...]:
+        speed_rad_s, self.before_rad = (theta_rad - self.before_rad) / 0.01, theta_rad
+        return (12.0 * (reference_rad - theta_rad) - 1.0 * speed_rad_s,)
+
+
+def test_an_arm_that_stands_on_its_hinge_tells_no_more_than_its_numbers_hold(tmp_path):
+    """Truth by hand: of J, K, b and G only the ratios move the arm, so they are not told alone; with K known the others are, within 4 sd.
+
+    Its pole of 4.5 rad/s carries slopes through 6.4 s by exp(28), whose squares leave no digits: an sd of 1e-7 of a value is none.
+    """
+    standing = replace(PLAIN, parameters={**PLAIN.parameters, "G": (-0.2, 0.02, "N m")})
+    bound = bind(load_plant(standing.write(tmp_path, "standing")))
+    t_s = 0.01 * np.arange(2400)
+    wave = Manoeuvre("wave", t_s, 0.3 * np.sign(np.sin(1.3 * t_s))[:, None], np.zeros(2))
+    flight = fly(bound, Held(), wave)
+    alone = identify_logs(bound, {"flight": flight}, ("J", "K", "b", "G"))
+    assert alone.growth < 1e6
+    assert [len(direction.weights) for direction in alone.unseen] == [4]
+    assert alone.unseen[0].relative_sd > 1e3
+    found = identify_logs(bound, {"flight": cut(flight, 0.0, 8.0)}, ("J", "b", "G"))
+    assert found.unseen == ()
+    for name in ("J", "b", "G"):
+        sd = float(found.belief.sd[found.belief.names.index(name)])
+        assert 1e-6 * abs(bound.parameter(name)) < sd < 0.1 * abs(bound.parameter(name)), name
+        assert abs(found.belief.value(name) - bound.parameter(name)) < 4.0 * sd, name
 
 
 def test_jittered_times_and_lost_samples_do_no_harm(bound, flown):

@@ -77,3 +77,21 @@ def test_rows_minutes_apart_by_the_dates_of_a_file_are_not_remarked(tmp_path: Pa
     done = imported_here(tmp_path / "log.csv", ColumnMapping())
     assert done.log.sample_period_s == 300.0
     assert not any("apart" in told for told in done.found)
+
+
+@pytest.mark.parametrize(("name", "per_s"), [("time_h", 3600.0), ("elapsed_min", 60.0), ("timeMs", 1e-3)])
+def test_a_clock_in_any_unit_of_time_behind_a_name_of_times_is_converted(
+    name: str, per_s: float, tmp_path: Path
+) -> None:
+    path = save_run(tmp_path / "run.mat", **{"t_s": None, name: T_S / per_s})
+    for mapping in (ColumnMapping(), ColumnMapping(columns={"t_s": name})):
+        np.testing.assert_allclose(imported_here(path, mapping).log.t_s, T_S, atol=1e-9)
+
+
+def test_a_heading_with_a_stroke_is_no_path(tmp_path: Path) -> None:
+    rows = [f"05/03/2024 11:59:{58 + t // 100:02d}.{t % 100:02d},{t / 100}" for t in range(0, 100, 2)]
+    named = "Date/Time,x\n" + "\n".join(rows) + "\n"
+    (tmp_path / "run.csv").write_text(named)
+    columns = {"u_M_V": "x", "u_T_V": "x", "psi_rad": "x", "phi_rad": "x"}
+    log = imported_here(tmp_path / "run.csv", ColumnMapping(columns=columns)).log
+    np.testing.assert_allclose(log.t_s - log.t_s[0], np.arange(50) * 0.02, atol=1e-6)

@@ -52,6 +52,13 @@ def test_another_quantity_an_unknown_unit_and_counts_of_no_turn_are_refused(si: 
         ("x_min", ""),
         ("deg", ""),
         ("psi", ""),
+        ("/meas.psi.deg", "deg"),
+        ("/cmd.main.V", ""),
+        ("run.psiDeg", "deg"),
+        ("timeMs", "ms"),
+        ("shaftRpm", "rpm"),
+        ("SpeedRef", ""),
+        ("MainV", ""),
     ],
 )
 def test_a_unit_is_read_off_the_end_of_a_name(name: str, suffix: str) -> None:

@@ -41,6 +41,7 @@ def random_log(seed=0, rows=50):
     return RunLog(
         COLUMNS, 0.01, "closed", t_s, random.normal(size=(rows, 2)), y,
         extra={"psi_ref_rad": random.normal(size=rows)}, seq=np.arange(7, 7 + rows), locked=("azimuth",), table_digest="ab12",
+        arithmetic="float64",
     )  # fmt: skip
 
 
@@ -52,6 +53,7 @@ def test_a_log_reads_back_exactly_with_its_jitter_gaps_and_nan(tmp_path):
         np.testing.assert_array_equal(getattr(back, name), getattr(log, name))
     np.testing.assert_array_equal(back.column("psi_ref_rad"), log.extra["psi_ref_rad"])
     assert (back.sample_period_s, back.loop, back.locked, back.table_digest) == (0.01, "closed", ("azimuth",), "ab12")
+    assert back.arithmetic == "float64"
     assert csv_text(back) == csv_text(log)
     assert plant_of_log(tmp_path / "run.csv") == "ce150"
 
@@ -136,6 +138,11 @@ def test_a_wrong_csv_is_refused_with_its_line(files, csv, message):
         ("locked = []\n", "locked = []\nwind = 3\n", "key 'wind': got an unknown key"),
         ("locked = []\n", "locked = []\n[controller]\n", "key 'table_digest': got nothing"),
         ("locked = []\n", 'locked = []\n[controller]\ntable_digest = ""\n', "table_digest: text: got ''"),
+        (
+            "locked = []\n",
+            'locked = []\n[controller]\ntable_digest = "a"\narithmetic = "half"\n',
+            "controller: arithmetic: got 'half'",
+        ),
         ("locked = []\n", "locked = [\n", "got no TOML"),
     ],
 )

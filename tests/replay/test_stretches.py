@@ -5,13 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from design.law import FloatLaw
 from records.log import RunLog
 from replay.digits import printing
 from replay.flight import flight_of
 from replay.printed import agrees_as_printed
 from replay.stretches import replay_stretches
-from tests.law_tables import ce150_table
-from tests.replay.firmware_flights import default_flight, own, rows_of
+from sim.bind import bind
+from sim.loop import fly, fly_law
+from tests.law_tables import ce150_table, changed_axis
+from tests.replay.firmware_flights import default_flight, lively, own, plant, rows_of
+from twinlaw.pages.diagnose.firmware import differs
+from verification.host_law import host_law
 
 TABLE = ce150_table()
 
@@ -81,3 +86,72 @@ def test_a_second_recording_in_the_file_is_replayed_from_rest() -> None:
     )
     begins = np.arange(len(twice.t_s)) == len(log.t_s)
     assert "it agrees to the bit" in (replay_stretches(twice, TABLE, begins=begins).sentence or "")
+
+
+def test_a_law_that_flew_in_double_precision_by_its_log_is_run_again_in_it() -> None:
+    log = fly_law(plant(), TABLE, lively())
+    assert log.arithmetic == "float64"
+    found = replay_stretches(log, TABLE)
+    assert (found.first_difference_s, found.cause) == (None, "flown_in_double")
+    assert not differs(found.record())
+    unsaid = replay_stretches(replace(log, arithmetic=None), TABLE)  # a firmware that computes so is not its table's
+    assert (unsaid.cause, differs(unsaid.record())) == ("float64", True)
+
+
+def test_what_else_is_amiss_with_a_flight_in_double_precision_is_still_told() -> None:
+    log = fly_law(plant(), TABLE, lively())
+    late = replace(log, y=np.concatenate([log.y[1:], log.y[-1:]]))
+    found = replay_stretches(late, TABLE)
+    assert "stale_sample" in (found.cause or "")
+    assert "double" not in (found.sentence or "")
+
+
+@pytest.mark.parametrize("decimals", [None, 3])
+def test_the_steps_of_a_sensor_are_no_rounding_of_the_log(decimals: int | None) -> None:
+    """Steps of 1 mrad have three decimals, as text too: a firmware that computes otherwise is not cleared by them."""
+    bound = bind(replace(plant().plant, sensors={"psi_rad": 1e-3, "phi_rad": 1e-3}))
+    table = changed_axis(changed_axis(TABLE, "elevation", resolution_rad=1e-3), "azimuth", resolution_rad=1e-3)
+    for law, cause in ((host_law(table), None), (FloatLaw(table), "float64")):
+        log = fly(bound, law, lively(), table_digest=table.digest)
+        log = log if decimals is None else replace(log, y=np.round(log.y, decimals))
+        found = replay_stretches(log, table)
+        assert found.cause == cause
+        assert found.bit_exact == (cause is None)
+
+
+def test_zeros_written_for_readings_that_were_not_there_are_none_also_beside_zero() -> None:
+    """Far from zero the check of the log leaves them out; a step or two beside it nobody sees them but the law."""
+    log = own()
+    far = np.flatnonzero(np.abs(log.y[:, 1]) > 0.1)[5::97]
+    near = np.flatnonzero((log.y[:, 1] != 0.0) & (np.abs(log.y[:, 1]) < 5e-3))[3::7]
+    assert far.size > 5
+    assert near.size > 5
+    y = log.y.copy()
+    y[far, 1], y[near, 1] = np.nan, 0.0
+    found = replay_stretches(replace(log, y=y), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "sample_not_logged")
+    y[far, 1] = log.y[far, 1]  # where no reading is missing a zero is a zero
+    assert replay_stretches(replace(log, y=y), TABLE).cause != "sample_not_logged"
+
+
+def test_a_sensor_that_stands_in_the_log_alone_is_told_with_its_times_and_nobody_is_accused() -> None:
+    log = default_flight()
+    rows = slice(2500, 2700)
+    y = log.y.copy()
+    y[rows, 0] = y[rows.start, 0]
+    found = replay_stretches(replace(log, y=y), TABLE)
+    assert np.ptp(log.y[rows, 0]) > 0.0
+    assert found.cause == "missing_rows"
+    assert "psi_rad stands from 25" in (found.sentence or "")
+    assert "psi_rad stands" in (found.sentence or "")
+    assert not differs(found.record())
+
+
+def test_a_firmware_that_went_wrong_in_a_hold_is_not_cleared_by_it() -> None:
+    """Noise on the law's answer from a hold on: the readings stand, and what follows is no answer of the law either."""
+    log = default_flight()
+    u = log.u.copy()
+    u[2500:, 0] += np.random.default_rng(4).normal(0.0, 0.01, len(u) - 2500)
+    found = replay_stretches(replace(log, u=u), TABLE)
+    assert found.cause == "not_found"
+    assert differs(found.record())

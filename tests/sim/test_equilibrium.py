@@ -8,7 +8,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.equilibrium import equilibrium, rest_with
 from sim.kernel.reference import reference
-from tests.own_plants import HEATER, TANKS
+from tests.own_plants import HANGING, HEATER, TANKS
 
 U_M0_V = {
     -45: 4.653,
@@ -95,3 +95,14 @@ def test_a_plant_without_positions_rests_also_with_an_effect_that_is_flat_elsewh
 
 def test_of_a_plant_with_positions_those_that_are_measured_are_held(bound):
     np.testing.assert_array_equal(rest_with(bound, [0], [0.3]).x0, equilibrium(bound, 0.3).x0)
+
+
+def test_of_more_positions_than_inputs_the_wanted_ones_are_held_and_others_find_their_place(tmp_path):
+    """Truth by hand: the weight G = 0.2 N m stretches the spring of 1 N m/rad by 0.2 rad, wherever the load is wanted; u = G / K."""
+    hanging = bind(load_plant(HANGING.write(tmp_path, "hanging")))
+    point = rest_with(hanging, [1], [0.3])
+    np.testing.assert_allclose(point.x0, [0.5, 0.0, 0.3, 0.0], atol=1e-9)
+    np.testing.assert_allclose(point.u0, [0.2 / 0.05], rtol=1e-9)
+    assert point.psi_rad == point.x0[0]
+    with pytest.raises(BadInput, match="whether its inputs can hold it there"):
+        rest_with(hanging, [0, 1], [0.0, 0.3])

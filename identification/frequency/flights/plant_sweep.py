@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from design.law import FloatLaw
 from identification.frequency.flights.sweep import Sweep, sweep_input
 from records.errors import BadInput
-from records.log import RunLog
+from records.log import DOUBLE, RunLog
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import rest_with
@@ -74,7 +74,10 @@ def closed_loop_sweeps(
         if on == "references" and is_kernel_s(table):
             found[f"sweep_{loop.axis}"] = fly_law(bound, table, plan)
         else:
-            found[f"sweep_{loop.axis}"] = fly(bound, Wired(law, wires), plan, table_digest=table.digest)
+            # With a sweep added behind it, the inputs are no longer the law's answers, which naming its table would promise.
+            digest = table.digest if on == "references" else None
+            log = fly(bound, Wired(law, wires), plan, table_digest=digest, arithmetic=DOUBLE)
+            found[f"sweep_{loop.axis}"] = log
     return found
 
 

@@ -6,7 +6,8 @@ Eq (6) of seed 002, T(s) = C (s I - A)^-1 B + D, for readings every T_s of a pla
 half sample of delay is 9 degrees at 15 rad/s and 50 Hz. A row is read before its new input takes hold, hence D / z.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -180,18 +181,33 @@ def operating_point_model(
 ) -> OperatingPointModel:
     """The plant where it rests at the `means` of its outputs; the free parameters within `limits`, by default a fifth to five times.
 
-    Of axes with positions that is by these, of a plant without one by what its loops measure, or where none are named by as many of its
-    outputs as it has inputs. Raises BadInput for an unknown parameter or a plant that cannot rest there.
+    Of axes with positions that is by these; where no input holds them all there, and of a plant without a position, by what its loops
+    measure, or where none are named by as many of its outputs as it has inputs.
+
+    Raises BadInput for an unknown parameter or a plant that cannot rest there.
     """
     outputs = list(map(str, bound.model.outputs))
     arms = [axis.position for axis in bound.model.axes if axis.position is not None]
+    held = [output for output, y in zip(outputs, bound.model.outputs.values(), strict=True) if y in arms]
+    own = ranges_of(bound, names, limits)
     if arms:
-        held = [output for output, y in zip(outputs, bound.model.outputs.values(), strict=True) if y in arms]
-    elif bound.plant.design:
-        held = [loop.output for loop in read_settings(bound).loops]
-    else:
-        held = outputs[: len(bound.model.inputs)]
-    places = tuple(map(outputs.index, held))
+        with suppress(BadInput):
+            return OperatingPointModel(bound, own, *_held_at(bound, held, means))
+    return OperatingPointModel(bound, own, *_held_at(bound, _driven(bound, outputs), means))
+
+
+def _held_at(
+    bound: BoundPlant, held: Sequence[str], means: Mapping[str, float]
+) -> tuple[tuple[int, ...], tuple[float, ...]]:
+    """Places of the outputs and their means; raises BadInput where the plant does not rest with them there."""
+    places = tuple(list(map(str, bound.model.outputs)).index(output) for output in held)
     values = tuple(means[output] for output in held)
     rest_with(bound, places, values)
-    return OperatingPointModel(bound, ranges_of(bound, names, limits), places, values)
+    return places, values
+
+
+def _driven(bound: BoundPlant, outputs: Sequence[str]) -> list[str]:
+    """Outputs that the inputs can hold: those of the loops, or where none are named as many as there are inputs."""
+    if bound.plant.design:
+        return [loop.output for loop in read_settings(bound).loops]
+    return list(outputs[: len(bound.model.inputs)])

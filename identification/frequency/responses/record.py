@@ -18,8 +18,8 @@ MOVED = 1e-9  # a signal whose range is below that is constant
 class Record:
     """Inputs u (n, inputs), held from one row to the next, outputs y (n, outputs), and what was swept, r (n, inputs).
 
-    In an open loop r is u. In a closed one noise comes back through u, and r are the references, which it does not reach. `loop` is
-    "open" or "closed".
+    In an open loop r is u. In a closed one noise comes back through u, and r are the references, which it does not reach, of all outputs
+    until `with_instruments` has chosen. `loop` is "open" or "closed".
     """
 
     name: str
@@ -44,10 +44,10 @@ def record_of(log: RunLog, name: str, outputs: Sequence[str]) -> Record:
     grid_s = log.t_s[0] + log.sample_period_s * np.arange(count)
     held = np.clip(np.searchsorted(log.t_s, grid_s + 0.5 * log.sample_period_s) - 1, 0, log.t_s.size - 1)
     y = np.column_stack([_line(log, output, grid_s, name) for output in outputs])
-    references = [reference_name(output) for output in log.columns.outputs[: log.u.shape[1]]]
+    references = [reference_name(output) for output in log.columns.outputs]
     r = log.u
-    if log.loop == "closed" and all(reference in log.extra for reference in references):
-        r = np.column_stack([_held(log.extra[reference]) for reference in references])
+    if log.loop == "closed" and sum(name in log.extra for name in references) >= log.u.shape[1] > 0:
+        r = np.column_stack([_held(log.extra.get(name, np.zeros(log.t_s.size))) for name in references])
     u = log.u[held]
     return Record(name, log.sample_period_s, u, y, u if r is log.u else r[held], log.loop)
 
@@ -69,15 +69,19 @@ def _line(log: RunLog, output: str, grid_s: Array, name: str) -> Array:
 
 
 def with_instruments(records: Sequence[Record]) -> tuple[Record, ...]:
-    """The records as they are, or where no reference of a closed loop moves at all, with u for r: the sweep was on the inputs.
+    """The records with as many references that move as there are inputs, or where none of a closed loop moves at all, with u for r: the
+    sweep was on the inputs. The loops need not be those of the first outputs: of a cart behind a belt it is the cart's reference.
 
     Raises BadInput where some references move and others do not: then the loop hides what the input of the others does.
     """
-    still = np.max([np.ptp(record.r, axis=0) for record in records], axis=0) <= MOVED
-    if not np.any(still):
-        return tuple(records)
-    if not np.all(still) and any(record.r is not record.u for record in records):
-        got = f"reference {int(np.flatnonzero(still)[0]) + 1} of {still.size} moves in none of them"
+    closed = [record for record in records if record.r is not record.u]
+    moves = np.max([np.ptp(record.r, axis=0) for record in closed], axis=0) > MOVED if closed else np.zeros(0, bool)
+    if not np.any(moves):
+        return tuple(replace(entry, r=entry.u) for entry in records)
+    count = records[0].u.shape[1]
+    if np.sum(moves) < count:
+        got = f"reference {int(np.flatnonzero(~moves)[0]) + 1} of {moves.size} moves in none of them"
         names = ", ".join(record.name for record in records)
         raise BadInput("references", names, got, "each swept on its own", "add a record in which it is swept")
-    return tuple(replace(entry, r=entry.u) for entry in records)
+    chosen = np.flatnonzero(moves)[:count]
+    return tuple(entry if entry.r is entry.u else replace(entry, r=entry.r[:, chosen]) for entry in records)

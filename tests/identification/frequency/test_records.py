@@ -44,6 +44,16 @@ def test_a_reference_that_is_missing_in_a_row_is_that_of_the_row_before():
     np.testing.assert_array_equal(found.r[:, 0], [0.5, 0.5, 0.5, 0.7])
 
 
+def test_of_more_references_than_inputs_those_that_move_tell_of_the_loop():
+    """A cart behind a belt: the pulley is measured first, the cart's reference is what moves."""
+    columns = LogColumns("cart", ("u_V",), ("phi_rad", "x_m"), ("phi_ref_rad", "x_ref_m"), ())
+    t_s, swept = 0.1 * np.arange(4), np.array([0.0, 1.0, 2.0, 3.0])
+    for extra in ({"phi_ref_rad": np.zeros(4), "x_ref_m": swept}, {"x_ref_m": swept}):
+        closed = RunLog(columns, 0.1, "closed", t_s, np.ones((4, 1)), np.ones((4, 2)), extra)
+        (found,) = with_instruments([record_of(closed, "loop", ("phi_rad", "x_m"))])
+        np.testing.assert_array_equal(found.r, swept[:, None])
+
+
 def one(value):
     return np.array([[value]])
 

@@ -42,6 +42,18 @@ def test_a_struct_and_foreign_names_with_factors_are_taken(tmp_path: Path) -> No
     assert log.loop == "open"
 
 
+def test_an_array_of_structures_with_a_number_each_is_a_log(tmp_path: Path) -> None:
+    """As a loop of `log(k).psi_rad = ...` fills it."""
+    kinds = [(name, object) for name in (*RUN, "mode")]
+    rows = zip(*RUN.values(), ["hold"] * len(T_S), strict=True)
+    savemat(tmp_path / "run.mat", {"log": np.array(list(rows), dtype=kinds)})
+    out = tmp_path / "run.csv"
+    assert main(["import", str(tmp_path / "run.mat"), "--loop", "open", "--out", str(out)]) == 0
+    log = load_log(out, CE150)
+    for name, values in RUN.items():
+        np.testing.assert_array_equal(log.column(name), values)
+
+
 def _without(name: str) -> dict[str, Any]:
     return {name: None}
 

@@ -308,7 +308,12 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
 @pytest.mark.parametrize(
     ("cause", "first", "said"),
     [
-        ("late_output: the firmware sent its output one sample late", 0.01, "does not do what its table says: the"),
+        ("float64: the firmware computes in double precision", 0.01, "does not do what its table says: the"),
+        (
+            "late_output: the firmware sent its output one sample late, or the log has it so",
+            0.01,
+            "The log does not hold what the firmware of its table computes: the firmware sent its output one sample late, or",
+        ),
         (
             "output_sign: the firmware sends u_T_V with its sign turned, or the log has it so",
             0.0,

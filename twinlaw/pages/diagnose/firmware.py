@@ -4,11 +4,12 @@ from records.diagnosis import Firmware
 from replay.columns import OF_THE_COLUMNS
 from replay.firmware import CLEARED, NOT_FOUND
 from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
+from replay.variants import LATE_OUTPUT
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
 _OF_THE_LOG = (*CLEARED, "begins_in_flight", "fused_multiply_add")
 # What firmware and log cannot be told apart in: the plant may have been given other inputs than were logged.
-_OF_THE_COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE, ANGLE_LOGGED_LATE)
+_OF_THE_COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE, ANGLE_LOGGED_LATE, LATE_OUTPUT)
 _ROWS_LACK = "rows that the log lacks"
 
 

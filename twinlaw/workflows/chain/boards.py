@@ -86,6 +86,6 @@ def fly_board(bound: BoundPlant, table: FlownTable, client: BoardClient) -> Chai
     wires, whole = wiring(bound, table.loops), flight_of(bound, table)
     with tally("flying the firmware through its serial line", whole.t_s.size) as tell:
         controller = Wired(BoardController(client, lambda: tell(False, False)), wires)
-        log = fly(bound, controller, whole, table_digest=table.digest)
+        log = fly(bound, controller, whole, table_digest=table.digest, arithmetic=client.numbers.name)
     client.disarm()
     return chain_flight(log, table.loops, client.counters())

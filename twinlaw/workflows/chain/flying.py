@@ -8,7 +8,7 @@ import numpy as np
 from controllers import loading
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.log import RunLog
+from records.log import DOUBLE, RunLog
 from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from sim.bind import BoundPlant
@@ -46,7 +46,7 @@ def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
             log = fly_law(bound, table, whole)
         else:
             law = Wired(loading.row_of(table).float_law(table), wires)
-            log = fly(bound, law, whole, table_digest=table.digest)
+            log = fly(bound, law, whole, table_digest=table.digest, arithmetic=DOUBLE)
     return chain_flight(log, table.loops)
 
 
@@ -82,7 +82,7 @@ def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlig
     wires = wiring(bound, table.loops)
     law = Wired(HostLaw(loading.generate(table, arithmetic), arithmetic, loops=table.loops), wires)
     with stage(f"flying the generated law in {arithmetic}"):
-        log = fly(bound, law, flight_of(bound, table), table_digest=table.digest)
+        log = fly(bound, law, flight_of(bound, table), table_digest=table.digest, arithmetic=arithmetic)
     return chain_flight(log, table.loops)
 
 
