@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.detection import MEAN_GAIN, FormScores, gains
 from diagnosis.detect.forms import Form
-from records.functional_class import parse_class
+from records.text.functional_class import parse_class
 from sim.effect import Effect
 
 Array = NDArray[np.float64]

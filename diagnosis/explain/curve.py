@@ -10,7 +10,7 @@ from diagnosis.detect.detection import FormScores, gains
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import Signals, angle_names, rotor_name, signals
-from records.functional_class import parse_class
+from records.text.functional_class import parse_class
 from records.text.units import unit_suffix
 from sim.places import InputPlace
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from records.functional_class import Dependence, FunctionalClass, parse_class
+from records.text.functional_class import Dependence, FunctionalClass, parse_class
 from sim.added_effects import library
 from tests.plants import bound
 

@@ -7,7 +7,7 @@ import sympy
 from diagnosis.detect.forms import forms
 from diagnosis.detect.shapes import beyond, follower, jitter, plain, shaped, waves_a_turn
 from diagnosis.detect.signals import angle_names, by_step, in_units, signals, value_of
-from records.functional_class import parse_class
+from records.text.functional_class import parse_class
 from tests.diagnosis.arm import arm, plain_linearisation
 
 

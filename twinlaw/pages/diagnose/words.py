@@ -7,8 +7,8 @@ from functools import cache
 from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
 from records.diagnosis import Diagnosis, Hypothesis
-from records.functional_class import Dependence, parse_class
 from records.reasons import DOUBTS, Note
+from records.text.functional_class import Dependence, parse_class
 from records.text.units import label, unit_of
 from sim.added_effects import every_effect
 
