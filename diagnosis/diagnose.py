@@ -30,7 +30,7 @@ from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search, with_twins
-from diagnosis.search.draughts import Draught, draught, gust_shares, without_gusts
+from diagnosis.search.draughts import Draught, draught, without_memory
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
@@ -171,10 +171,10 @@ def _scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decisio
 
 
 def _beside_noise(seen: Seen) -> Seen:
-    """The same, from the plant without torques that come and go where a name is to be had for them: those follow any motion row by row, as
-    slow as it is, and beside them a name would explain only what is fast. What follows does not foresee, so the best name there must
-    predict the logs better over a second; where nothing shows beside them, it must be by far likelier."""
-    still = _without(seen, list(gust_shares(seen.case, seen.retuned.fit.hypothesis)))
+    """The same, from the plant without noise with a memory where a name is to be had for it: such noise follows any motion row by row, as
+    slow as it is, and beside it a name would explain only what is fast. What follows does not foresee, so the best name there must
+    predict the logs better over a second; where nothing shows beside the noise, it must be by far likelier."""
+    still = _still(seen)
     if still is None:
         return seen
     begun = _alone(still)
@@ -188,7 +188,7 @@ def _beside_noise(seen: Seen) -> Seen:
 
 
 def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
-    """Whether the best name without torques that come and go predicts the logs better than the plant with them, and the rule."""
+    """Whether the best name without noise with a memory predicts the logs better than the plant with it, and the rule."""
     gain = FittedLogs(seen.case).gain(best.fit.hypothesis, seen.retuned.fit.hypothesis) if best.effects else 0.0
     stands = gain >= decisions.MATTERS
     outcome = "a cause is looked for without noise" if stands else "a cause is looked for beside noise"
@@ -203,10 +203,10 @@ def _over_noise(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
     return decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.OVER_NOISE, outcome), stands
 
 
-def _without(seen: Seen, gusts: Sequence[str]) -> Seen | None:
-    """The same from the plant without some torques that come and go; None without any, or where it cannot follow its logs then."""
+def _still(seen: Seen) -> Seen | None:
+    """The same from the plant without noise with a memory; None where it has none, or cannot follow its logs then."""
     case = seen.case
-    still = without_gusts(case, seen.retuned, gusts) if gusts else None
+    still = without_memory(case, seen.retuned)
     if still is None:
         return None
     linearisation = linearised(case, still.fit)

@@ -103,6 +103,16 @@ def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     }
 
 
+def without_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
+    """The same fitted without any noise with a memory, of axes or of readings; None where it has none, or cannot follow its logs then."""
+    hypothesis = fitted.fit.hypothesis
+    gusts = list(gust_shares(case, hypothesis))
+    if not gusts and not hypothesis.reading_noise:
+        return None
+    read = replace(fitted, fit=replace(fitted.fit, hypothesis=replace(hypothesis, reading_noise={})))
+    return without_gusts(case, read, gusts)
+
+
 def without_gusts(case: Case, fitted: FittedHypothesis, names: Collection[str]) -> FittedHypothesis | None:
     """The same fitted without some of its torques that come and go; None where the plant cannot follow its logs then.
 
