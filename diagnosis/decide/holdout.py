@@ -160,13 +160,14 @@ def is_surely_better(told: Score) -> bool:
 
 
 def surely_better(holdout: Holdout, tried: Sequence[FittedHypothesis]) -> tuple[bool, tuple[Decision, ...]]:
-    """Whether the first of what was `tried` surely predicts these logs better than `base`, and the rule; no where nothing was."""
+    """Whether the first of what was `tried` surely predicts these logs better than `base`, by what matters, and the rule; no where nothing
+    was."""
     if not tried:
         return False, ()
     told, of = holdout.score(tried[0].fit.hypothesis), " + ".join(tried[0].effects)
-    surely = is_surely_better(told)
-    outcome = "matters there" if surely else "no gap: too small to matter"
-    return surely, (held_against("matters_elsewhere", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),)
+    least = max(decisions.SURELY * told.sd, float(decisions.MATTERS))
+    outcome = "matters there" if told.gain > least else "no gap: too small to matter"
+    return told.gain > least, (held_against("matters_elsewhere", of, told.gain, least, NATS, outcome),)
 
 
 def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note, ...], tuple[Decision, ...]]:

@@ -146,6 +146,7 @@ def test_what_is_unlikely_is_added_only_where_the_hold_out_is_better_for_it() ->
     hardly = supposing({"arm.coulomb": {"b": 1e-9}})
     assert abs(holdout.score(hardly.fit.hypothesis).gain) < decisions.MATTERS
     assert added(holdout, hardly, 0.51)[0].effects == ("arm.coulomb",)
+    assert not surely_better(holdout, [hardly])[0]
     chosen, notes, rules = added(holdout, hardly, 0.49)
     assert (chosen is holdout.base, [note.kind for note in notes], rules[0].outcome) == (
         True,
