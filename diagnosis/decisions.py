@@ -285,6 +285,12 @@ RETUNE_MOST = Count(4, "parameters", "more are no re-tune")
 
 # How probable (decide)
 UNNAMED = Limit(0.95, "probability", "of an unknown effect where a name is forbidden")
+FREE_SPREAD = Limit(
+    3.0,
+    "standard deviations",
+    "a parameter within costs no more than its prior; what leaves it pays in full, as no form a little off makes that cheaper",
+    "EMPS, where a friction that falls with speed fits better with another friction fifteen of them from what is published",
+)
 NATS_PER_FORM = Limit(2.0, "nats", "that each further form of a class costs, with ln of the number of its forms")
 MOST_FORMS = Count(4, "forms", "of one class")
 SAME_PLACE = Limit(

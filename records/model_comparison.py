@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Candidate:
-    """An explanation by one effect or several ("a.b + c.d"): nats of its evidence beyond the plant alone, log odds before the data, and
-    nats by which logs that were not fitted prefer it to the likeliest (0: not asked)."""
+    """An explanation by one effect or several ("a.b + c.d"): nats of its evidence beyond the plant alone, log odds before the data
+    less what parameters beyond their spread cost, and nats by which logs that were not fitted prefer it to the likeliest (0: not asked)."""
 
     effect: str
     evidence_nats: float

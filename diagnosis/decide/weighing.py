@@ -8,6 +8,7 @@ from importlib.resources import files
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.decide.prior import prior_odds
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
@@ -117,7 +118,7 @@ def _comparison(tried: Tried, foretold: Foretold) -> ModelComparison:
             Candidate(
                 " + ".join(entry.effects),
                 entry.evidence - nominal.evidence,
-                prior_odds(entry, effects, tried.library.frictionless, tried.library.steps),
+                prior_odds(entry, effects, tried.library.frictionless, tried.library.steps) - _beyond_spread(entry),
                 foretold.nats.get(entry, 0.0),
             )
             for entry in tried.named
@@ -128,6 +129,12 @@ def _comparison(tried: Tried, foretold: Foretold) -> ModelComparison:
         favour=foretold.favour,
         parameters_nats=None if tried.retune is None else tried.retune - nominal.evidence,
     )
+
+
+def _beyond_spread(entry: FittedHypothesis) -> float:
+    """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
+    beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - decisions.FREE_SPREAD, 0.0)
+    return 0.5 * float(beyond @ beyond)
 
 
 def _read_off(tried: Tried, first: FittedHypothesis) -> FittedHypothesis:

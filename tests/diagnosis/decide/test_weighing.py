@@ -54,6 +54,16 @@ def test_what_forms_leave_makes_an_unknown_effect_likelier() -> None:
     assert much > little + 0.3
 
 
+def test_parameters_that_leave_their_spread_are_paid_in_full() -> None:
+    """Truth: five deviations are two beyond the three that are free, half of 2^2 nats, however little of its evidence counts."""
+    theta = RUB.fit.hypothesis.theta.copy()
+    theta[0] = 5.0
+    far = replace(RUB, fit=replace(RUB.fit, hypothesis=replace(RUB.fit.hypothesis, theta=theta)))
+    told = [weigh(tried(entry), None, LAW).comparison for entry in (RUB, far)]
+    (near_prior,), (far_prior,) = ([one.prior_nats for one in found.candidates] for found in told if found is not None)
+    assert near_prior - far_prior == pytest.approx(2.0)
+
+
 def test_parameters_alone_are_told_as_that_and_what_they_do_not_explain_is_unknown() -> None:
     explained, not_there = weigh(tried(left=5.0, retune=160.0), None, LAW), weigh(tried(left=5.0), None, LAW)
     assert explained.retune > 0.7
