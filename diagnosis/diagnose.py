@@ -30,7 +30,7 @@ from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search, with_twins
-from diagnosis.search.draughts import Draught, draught, without_memory
+from diagnosis.search.draughts import Draught, draught, gust_shares, without_memory
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
@@ -188,10 +188,16 @@ def _beside_noise(seen: Seen) -> Seen:
 
 
 def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
-    """Whether the best name without noise with a memory predicts the logs better than the plant with it, and the rule."""
+    """Whether the best name without noise with a memory predicts the logs better than the plant with it, and the rule; or whether that is
+    larger than noise, as where two effects are missing at once."""
+    shares = gust_shares(seen.case, seen.retuned.fit.hypothesis)
+    largest = max(shares, key=lambda name: shares[name], default="plant")
+    without = "a cause is looked for without noise"
+    if shares.get(largest, 0.0) > decisions.USUAL_GUST:
+        return decided("beyond_noise", largest, shares[largest], decisions.USUAL_GUST, without), True
     gain = FittedLogs(seen.case).gain(best.fit.hypothesis, seen.retuned.fit.hypothesis) if best.effects else 0.0
     stands = gain >= decisions.MATTERS
-    outcome = "a cause is looked for without noise" if stands else "a cause is looked for beside noise"
+    outcome = without if stands else "a cause is looked for beside noise"
     return decided("beside_noise", " + ".join(best.effects) or "plant", gain, decisions.MATTERS, outcome), stands
 
 
