@@ -291,6 +291,12 @@ RETUNE_MOST = Count(4, "parameters", "more are no re-tune")
 
 # How probable (decide)
 UNNAMED = Limit(0.95, "probability", "of an unknown effect where a name is forbidden")
+ALIKE_SCALES = Limit(
+    3.0,
+    "scales",
+    "hypotheses of as many effects that are no further apart are told as hardly told apart",
+    DEVELOPMENT_21,
+)
 FREE_SPREAD = Limit(
     3.0,
     "standard deviations",

@@ -85,7 +85,8 @@ def _least(loss: Callable[[Array], float], start: Array) -> Array:
 
 
 def _with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: float) -> ComparisonLaw:
-    """So the fit is defined with few examples and forgets units; a feature that does not vary has coefficient 0."""
+    """The law with its second half. Weight decay is per standard deviation of a feature, so the fit is defined with few examples and
+    forgets units; a feature that does not vary has coefficient 0."""
     found = np.array([features(entry.told, first_of(entry.told, law.shares(entry.told))) for entry in examples])
     right = np.array([_share(law, entry) >= LEAST for entry in examples], float)
     mean, sd = found.mean(axis=0), found.std(axis=0)

@@ -19,7 +19,6 @@ from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, 
 from records.reasons import Decision
 
 RANKED = 12  # hypotheses that are told of
-ALIKE_SCALES = 3.0  # of the scale, that hypotheses which the logs hardly tell apart may be from one another
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,8 +147,12 @@ def _rules(told: ModelComparison, first: Candidate | None, scale: float, explain
     return (
         held_against("told_apart", of, told.gain_nats, scale, "nats", "apart" if told.gain_nats > scale else "alike"),
         held_against("forms_left", of, told.left_nats, told.gain_nats, "nats", "counts"),
-        held_against("explained", of, explained, 0.5, "probability", "likelier" if explained > 0.5 else "less likely"),
+        held_against("explained", of, explained, decisions.LIKELIER_THAN_NOT, "probability", _odds(explained)),
     )
+
+
+def _odds(explained: float) -> str:
+    return "likelier" if explained > decisions.LIKELIER_THAN_NOT else "less likely"
 
 
 def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
@@ -159,7 +162,7 @@ def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
         for entry in weighed.fitted
         if entry is not first
         and len(entry.effects) == len(first.effects)
-        and abs(entry.evidence - first.evidence) < ALIKE_SCALES * weighed.scale
+        and abs(entry.evidence - first.evidence) < decisions.ALIKE_SCALES * weighed.scale
     ]
     return sorted(near, key=lambda entry: abs(entry.evidence - first.evidence))[:6]
 

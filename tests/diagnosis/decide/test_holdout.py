@@ -173,6 +173,16 @@ def test_a_log_that_says_nothing_of_a_name_speaks_neither_way_and_it_is_added() 
     assert added(holdout, supposing(push), 0.9)[0].effects == tuple(push)
 
 
+def test_a_push_of_another_log_is_not_added_with_parameters_that_predict_worse() -> None:
+    # Truth: no push in these logs, and the plant as stated; parameters five deviations off are another plant's.
+    _, holdout = judged(arm_log(seed=36))
+    push = supposing({"arm.disturbance": {"torque": 2e-3, "t_0": 12.0, "duration": 1.0}})
+    hypothesis = push.fit.hypothesis
+    bent = replace(push, fit=replace(push.fit, hypothesis=replace(hypothesis, theta=hypothesis.theta + 5.0)))
+    assert holdout.score(bent.fit.hypothesis).gain == 0.0
+    assert added(holdout, bent, 0.9)[0] is holdout.base
+
+
 def test_noise_is_not_what_is_judged() -> None:
     # Truth: the same friction with a process noise a hundred thousand times too small, so that its filter follows nothing, says as much
     # within a standard error, as it is given that of the plant that it is held against.
