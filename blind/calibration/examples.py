@@ -10,8 +10,8 @@ import numpy as np
 
 from blind.cases.make import salt_of
 from blind.cases.sealed import TRUTH_FILE, Truth, open_seal
-from blind.scoring.judge import means, touches
-from blind.scoring.results import names_of
+from blind.scoring.judge import filter_names, means, touches
+from blind.scoring.results import Names, Unreadable, names_of, read_answer
 from records.diagnosis import comparison_of
 from records.errors import BadInput
 from records.model_comparison import ComparisonLaw, ModelComparison, first_of
@@ -59,7 +59,7 @@ def family(name: str, folders: Sequence[tuple[Path, Path]]) -> Family:
         truths = open_seal(folder)
         cases += len(truths)
         seeds |= _seeds(f"{name} {folder}", folder)
-        examples = (_example(answers / case / "diagnosis.json", truth) for case, truth in truths.items())
+        examples = (_example(answers / case, truth) for case, truth in truths.items())
         found += [entry for entry in examples if entry is not None]
     if not found:
         where = ", ".join(str(answers) for _, answers in folders)
@@ -69,24 +69,33 @@ def family(name: str, folders: Sequence[tuple[Path, Path]]) -> Family:
     return Family(name, tuple(sorted(seeds)), cases, tuple(found))
 
 
-def _example(path: Path, truth: Truth) -> Example | None:
+def _example(folder: Path, truth: Truth) -> Example | None:
     """What an answer teaches; nothing where it has no candidates or cannot be read."""
+    answer = read_answer(folder)
+    if isinstance(answer, Unreadable):
+        return None
+    path, late = folder / "diagnosis.json", filter_names(answer, truth)
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         told = comparison_of(content[COMPARISON], str(path))
         named = [names_of(one.effect) for one in told.candidates]
-        right = tuple(means(names, truth) for names in named)
-        touching = tuple(touches(names, truth) for names in named)
-        return Example(told, right, touching, _stated(content, truth)) if named else None
+        right = tuple(_is_right(names, late, truth) for names in named)
+        touching = tuple(is_right or touches(names, truth) for names, is_right in zip(named, right, strict=True))
+        return Example(told, right, touching, _stated(content, late, truth)) if named else None
     except (OSError, ValueError, KeyError, TypeError, AttributeError, BadInput):
         return None
 
 
-def _stated(content: Mapping[str, object], truth: Truth) -> tuple[float, bool] | None:
+def _is_right(names: Names, late: Names, truth: Truth) -> bool:
+    """Whether a name says what is missing, with or without what a filter of the angles makes true too: all there is, on a rig as stated."""
+    return means(names - late, truth) or (not truth.effects and names <= late)
+
+
+def _stated(content: Mapping[str, object], late: Names, truth: Truth) -> tuple[float, bool] | None:
     effects = content.get("effects")
     if not isinstance(effects, list) or not effects:
         return None
-    return float(effects[0]["probability"]), means(names_of(effects[0]["effect"]), truth)
+    return float(effects[0]["probability"]), _is_right(names_of(effects[0]["effect"]), late, truth)
 
 
 def _seeds(told: str, folder: Path) -> set[int]:

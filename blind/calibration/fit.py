@@ -1,8 +1,8 @@
 """The law of probabilities (records/model_comparison.py) fitted to examples: the most probable one, beforehand normal in each number.
 
-Its two halves are apart: which of what explains is right, of answers that list it; and whether any of it is, of all. Now and then what is
-right was fitted so badly that no law of evidence finds it: such an answer, one in twenty say, teaches the first half little, and is one to
-which nothing that was found is right.
+Its two halves are apart: which of what explains is right, of answers that list it; and whether any of it is, of all, and of the same where
+what is right was withheld. Now and then what is right was fitted so badly that no law of evidence finds it: such an answer, one in twenty
+say, teaches the first half little, and is one to which nothing that was found is right.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,6 +14,7 @@ from scipy.optimize import minimize
 from scipy.special import expit
 
 from blind.calibration.examples import Example
+from blind.calibration.withheld import withheld
 from records.model_comparison import ComparisonLaw, features, first_of
 
 Array = NDArray[np.float64]
@@ -33,6 +34,7 @@ ENDED = {
 }  # the first half, of four numbers, without slopes
 MISLED = 0.05  # of the answers, in which every candidate may be right alike
 LEAST = 0.01  # of a share: what is right and has less was not found
+WITHHELD = 0.1  # of an answer, what each with a smaller library counts: of six gaps in a sealed family one is no library's
 
 UNLEARNED = ComparisonLaw(*(mean for mean, _ in SHARES.values()), *[0.0] * 5, *[0.5] * 2)
 
@@ -87,12 +89,16 @@ def _least(loss: Callable[[Array], float], start: Array) -> Array:
 def _with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: float) -> ComparisonLaw:
     """The law with its second half. Weight decay is per standard deviation of a feature, so the fit is defined with few examples and
     forgets units; a feature that does not vary has coefficient 0."""
-    found = np.array([features(entry.told, first_of(entry.told, law.shares(entry.told))) for entry in examples])
-    right = np.array([_share(law, entry) >= LEAST for entry in examples], float)
-    mean, sd = found.mean(axis=0), found.std(axis=0)
+    smaller = [entry for example in examples for entry in withheld(example)]
+    told_of = [*examples, *smaller]
+    weight = np.array([1.0] * len(examples) + [WITHHELD] * len(smaller))
+    found = np.array([features(entry.told, first_of(entry.told, law.shares(entry.told))) for entry in told_of])
+    right = np.array([_share(law, entry) >= LEAST for entry in told_of], float)
+    mean = np.average(found, axis=0, weights=weight)
+    sd = np.sqrt(np.average((found - mean) ** 2, axis=0, weights=weight))
     varies = sd > SAME
     told = np.column_stack([np.ones(len(right)), (found - mean)[:, varies] / sd[varies]])
-    numbers = _logistic(told, right, np.array([INTERCEPT_DECAY, *[decay] * int(varies.sum())]))
+    numbers = _logistic(told, right, weight, np.array([INTERCEPT_DECAY, *[decay] * int(varies.sum())]))
     coefficients = np.zeros(len(sd))
     coefficients[varies] = numbers[1:] / sd[varies]
     left, gain, favour, several = coefficients.tolist()
@@ -100,14 +106,14 @@ def _with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: floa
     return replace(law, intercept=intercept, left=left, gain=gain, favour=favour, several=several)
 
 
-def _logistic(told: Array, right: Array, decay: Array) -> Array:
-    """Where log loss plus decay is least, in nats."""
+def _logistic(told: Array, right: Array, weight: Array, decay: Array) -> Array:
+    """Where weighted log loss plus decay is least, in nats."""
 
     def loss(w: Array) -> float:
         z = told @ w
-        return float(np.sum(np.logaddexp(0.0, z) - right * z) + 0.5 * decay @ w**2)
+        return float(np.sum(weight * (np.logaddexp(0.0, z) - right * z)) + 0.5 * decay @ w**2)
 
     def slope(w: Array) -> Array:
-        return np.asarray(told.T @ (expit(told @ w) - right) + decay * w)
+        return np.asarray(told.T @ (weight * (expit(told @ w) - right)) + decay * w)
 
     return np.asarray(minimize(loss, np.zeros(told.shape[1]), jac=slope, method="BFGS", options={"gtol": SLOPE}).x)

@@ -66,13 +66,20 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
     )
 
 
-def _without_filter(answer: Answer, truth: Truth) -> Answer:
-    """The answer without what says that angles come late, or may as well, where a filter that is none of the effects makes them so: that is
-    true too. Where nothing else is named, there is nothing else to be told."""
+def filter_names(answer: Answer, truth: Truth) -> Names:
+    """Names of an answer that say that angles come late, or may as well, where a filter that is none of the effects makes them so: they are
+    true too."""
     if not any(defect.startswith(FILTERED) for defect in truth.defects):
-        return answer
+        return frozenset()
     late = frozenset(name for name in _said(answer) if _is_late(name)) | _perhaps_late(answer)
-    beside = frozenset(name for name in late if not any(_fits(name, e) for e in truth.effects))
+    return frozenset(name for name in late if not any(_fits(name, e) for e in truth.effects))
+
+
+def _without_filter(answer: Answer, truth: Truth) -> Answer:
+    """The answer without `filter_names`. Where nothing else is named, there is nothing else to be told."""
+    beside = filter_names(answer, truth)
+    if not beside:
+        return answer
     ranked: dict[Names, RankedAnswer] = {}
     for entry in answer.ranked:
         names = entry.names - beside
