@@ -34,7 +34,7 @@ ENDED = {
 }  # the first half, of four numbers, without slopes
 MISLED = 0.05  # of the answers, in which every candidate may be right alike
 LEAST = 0.01  # of a share: what is right and has less was not found
-WITHHELD = 0.1  # of an answer, what each with a smaller library counts: of six gaps in a sealed family one is no library's
+WITHHELD = 0.1  # of an answer, what each with a smaller library counts: of six gaps one is no library's
 
 UNLEARNED = ComparisonLaw(*(mean for mean, _ in SHARES.values()), *[0.0] * 5, *[0.5] * 2)
 
