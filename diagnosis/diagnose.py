@@ -131,7 +131,7 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
     return _detected(case, checked)
 
 
-def _detected(case: Case, checked: Case | None) -> Seen:
+def _detected(case: Case, checked: Case | None, beside: FittedHypothesis | None = None) -> Seen:
     """Fit the plant alone, and score the library beside it; where a gap shows, once more from where the best single effect left the plant's
     numbers, as slopes from the stated ones may lead to another hill."""
     nominal = best_plain_fit(case)
@@ -140,21 +140,27 @@ def _detected(case: Case, checked: Case | None) -> Seen:
     nominal = with_memory(case, nominal)
     if checked is not None and case is not held:
         checked = straight(checked)
-    seen = _scored(case, checked, nominal, between)
+    seen = replace(_scored(case, checked, nominal, between), beside=beside)
     if not _alarmed(seen.detection.p):
         return seen
-    begun = _alone(seen)
-    best = begun.best(1)[0]
+    seen = _with_names(seen)
+    best = _alone(seen.still or seen).best(1)[0]
     again = plain_beside(case, best.fit)
     if again is None:
-        return replace(seen, begun=begun)
+        return seen
     gain = evidence(again, case.library.effects) - seen.retuned.evidence
     better = gain > decisions.TAKEN_IN
     outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
-    if better:
-        return _scored(case, checked, again, (*between, rule))
-    return replace(seen, begun=begun).because(rule)
+    return replace(_scored(case, checked, again, (*between, rule)), beside=beside) if better else seen.because(rule)
+
+
+def _with_names(seen: Seen) -> Seen:
+    """The same with single effects as fitted, without noise with a memory where the plant has any: beside that they explain little."""
+    still = seen.still or _still(seen)
+    if still is None:
+        return replace(seen, begun=_alone(seen))
+    return replace(seen, still=replace(still, begun=_alone(still)))
 
 
 def _scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:
@@ -174,17 +180,17 @@ def _beside_noise(seen: Seen) -> Seen:
     """The same, from the plant without noise with a memory where a name is to be had for it: such noise follows any motion row by row, as
     slow as it is, and beside it a name would explain only what is fast. What follows does not foresee, so the best name there must
     predict the logs better over a second; where nothing shows beside the noise, it must be by far likelier."""
-    still = _still(seen)
+    still = seen.still or _still(seen)
     if still is None:
         return seen
-    begun = _alone(still)
-    best = begun.best(1)[0]
+    names = _alone(still)
+    best = names.best(1)[0]
     rule, stands = (_foreseen if _alarmed(seen.detection.p) else _over_noise)(seen, best)
     if not stands:
         return seen.because(rule)
     chance = min(seen.detection.p, float(np.exp(-max(best.evidence - seen.retuned.evidence, 0.0))))
-    still = replace(still, begun=begun, detection=replace(seen.detection, p=chance))
-    return still.because(rule)
+    found = replace(still, begun=names, detection=replace(seen.detection, p=chance), decisions=seen.decisions)
+    return found.because(rule)
 
 
 def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
@@ -217,7 +223,7 @@ def _still(seen: Seen) -> Seen | None:
         return None
     linearisation = linearised(case, still.fit)
     score_tests = tuple(score_effects(case, linearisation, case.library.candidates))
-    return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests, begun=None)
+    return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests, begun=None, still=None)
 
 
 def _false_alarm(of: str, p: float) -> Decision:
@@ -255,7 +261,7 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     seen = seen.because(*found_there.decisions)
     if found_there.case is seen.case:
         return seen, None
-    again = _beside_noise(replace(_detected(found_there.case, seen.checked), beside=found_there.beside))
+    again = _beside_noise(_detected(found_there.case, seen.checked, found_there.beside))
     return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
 
 

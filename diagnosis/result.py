@@ -62,7 +62,8 @@ class Material:
 class Seen:
     """What is seen before any cause is looked for: the plant re-tuned within its spread, score tests of the library beside it, the fit with
     lost frames, and what all that says of a gap; `beside` is what was fitted already, `checked` are the logs to check on, `decisions` the
-    rules that had a say so far, `begun` its single effects where these were fitted."""
+    rules that had a say so far, `begun` its single effects where these were fitted, `still` the same from the plant without noise with a
+    memory where that was looked at."""
 
     case: Case
     checked: Case | None
@@ -74,6 +75,7 @@ class Seen:
     decisions: tuple[Decision, ...] = ()
     beside: FittedHypothesis | None = None
     begun: Alone | None = None
+    still: "Seen | None" = None
 
     def because(self, *further: Decision) -> "Seen":
         """The same with further rules that had a say."""

@@ -3,7 +3,8 @@
 (1)  scale        = e^size (1 + formed)^power, nats that forms a little off the truth may cost: more where more is explained by them
 (2)  ln weight_i  = evidence_i / scale + prior_i - further n_i + hold_out h_i, n_i effects beside one, h_i nats on logs not fitted
 (3)  ln weight_p  = evidence_p / scale, of the plant's own parameters beyond their spread and no effect
-(4)  P(explained) = 1 / (1 + e^-z), z = intercept + left ln(1 + left) + gain ln(1 + gain) + favour f + several (n > 0)
+(4)  P(explained) = 1 / (1 + e^-z), z = intercept + left ln(1 + left) + gain ln(1 + gain) + favour f + several (n > 0), of the
+     likeliest by (2) and (3): what it gains, and what is left beside it of what the best and then free forms gain
 (5)  P_i          = P(explained) weight_i / sum of weights
 
 The rest is an effect's that no candidate explains; of that a share is right in part, as so many wrong names of one effect or several were.
@@ -84,11 +85,11 @@ class ComparisonLaw:
         return np.asarray(weights / weights.sum())
 
     def explained(self, told: ModelComparison) -> float:
-        """(4), of the first of the candidates by (2); 0 where nothing explains."""
+        """(4); 0 where nothing explains."""
         shares = self.shares(told)
         if not shares.any():
             return 0.0
-        z = self.intercept + float(np.dot(self.coefficients, features(told, first_of(told, shares))))
+        z = self.intercept + float(np.dot(self.coefficients, features(told, shares)))
         return float(1.0 / (1.0 + np.exp(-z)))
 
     @property
@@ -108,10 +109,15 @@ def first_of(told: ModelComparison, shares: Array) -> Candidate | None:
     return told.candidates[int(np.argmax(shares[:-1]))] if told.candidates else None
 
 
-def features(told: ModelComparison, first: Candidate | None) -> tuple[float, ...]:
-    """What (4) is a function of."""
+def features(told: ModelComparison, shares: Array) -> tuple[float, ...]:
+    """What (4) is a function of, by the shares of (2) and (3)."""
+    place = int(np.argmax(shares))
+    first = told.candidates[place] if place < len(told.candidates) else None
+    evidence_nats = told.parameters_nats if first is None else first.evidence_nats
+    gain_nats = max(evidence_nats or 0.0, 0.0)
+    left_nats = told.left_nats + max(told.gain_nats - gain_nats, 0.0)
     several = float(first is not None and first.further > 0)
-    return (float(np.log1p(told.left_nats)), float(np.log1p(told.gain_nats)), told.favour or 0.0, several)
+    return (float(np.log1p(left_nats)), float(np.log1p(gain_nats)), told.favour or 0.0, several)
 
 
 def law_of(numbers: Mapping[str, Any]) -> ComparisonLaw:

@@ -15,7 +15,7 @@ from scipy.special import expit
 
 from blind.calibration.examples import Example
 from blind.calibration.withheld import withheld
-from records.model_comparison import ComparisonLaw, features, first_of
+from records.model_comparison import ComparisonLaw, features
 
 Array = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ def _with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: floa
     smaller = [entry for example in examples for entry in withheld(example)]
     told_of = [*examples, *smaller]
     weight = np.array([1.0] * len(examples) + [WITHHELD] * len(smaller))
-    found = np.array([features(entry.told, first_of(entry.told, law.shares(entry.told))) for entry in told_of])
+    found = np.array([features(entry.told, law.shares(entry.told)) for entry in told_of])
     right = np.array([_share(law, entry) >= LEAST for entry in told_of], float)
     mean = np.average(found, axis=0, weights=weight)
     sd = np.sqrt(np.average((found - mean) ** 2, axis=0, weights=weight))

@@ -24,7 +24,7 @@ NUDGE = 0.05  # decades, over which slopes are taken
 # Of ln s and of a whitened innovation: more than a nudge makes of them. Beyond, an axis came to rest a row earlier: no slope.
 JUMP, FAR = 0.3, 1.0
 MOST_STEPS = 10
-LITTLE_PROMISED = 0.3  # nats
+LITTLE_PROMISED = 1.0  # nats: a tenth of what tells two names apart (TAKEN_IN)
 NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
 UNKNOWN_SD = 1e3  # decades: next to nothing is known beforehand
 SHARES = (1.0, 0.3, 0.1)  # of a step that are tried

@@ -13,7 +13,7 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.search.draughts import with_noise_beside
+from diagnosis.search.draughts import with_noise_beside, with_noise_of
 from diagnosis.search.exchange import exchange, fit_twins, is_twin
 from diagnosis.search.fitting import Job, is_astray, keep_better, once_more, refined, rough
 from diagnosis.search.own_events import with_own_events
@@ -121,11 +121,12 @@ def _best(found: Mapping[frozenset[str], FittedHypothesis]) -> FittedHypothesis:
 def with_twins(case: Case, told: Search, first: FittedHypothesis) -> Search:
     """The search with what is hardly told from `first`, fitted where that was not tried; itself where all was.
 
-    What is told first may be another than what the search found best: the hold-out has a say in that.
+    What is told first may be another than what the search found best: the hold-out has a say in that. They get the noise that it has, as
+    noise with a memory beside some alone would decide between them.
     """
     found = {frozenset(entry.effects): entry for entry in told.fitted}
-    ends = fit_twins(case, found, first)
-    kept = [entry for entry in with_noise_beside(case, ends) or ends if _certain(entry, found)]
+    ends = with_noise_of(case, fit_twins(case, found, first), first)
+    kept = [entry for entry in ends if _certain(entry, found)]
     if not kept:
         return told
     return replace(told, fitted=tuple(sorted([*told.fitted, *kept], key=lambda entry: -entry.evidence)))

@@ -61,6 +61,20 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
     return [first, *(entry for entry in found if entry is not None)]
 
 
+def with_noise_of(case: Case, fitted: Sequence[FittedHypothesis], known: FittedHypothesis) -> list[FittedHypothesis]:
+    """Hypotheses with the noise with a memory that one has which they are to be compared with: none where it has none. Those in which it
+    would be more than noise are left out."""
+    if not _has_memory(case, known):
+        return list(fitted)
+    found = thread_map(lambda entry: _with_memory(case, entry, known), fitted)
+    return [entry for entry in found if entry is not None]
+
+
+def _has_memory(case: Case, fitted: FittedHypothesis) -> bool:
+    hypothesis = fitted.fit.hypothesis
+    return bool(gust_shares(case, hypothesis) or hypothesis.reading_noise)
+
+
 def _in_reach(case: Case, first: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
     """Those of the others that noise with a memory could bring near the first: it gains no more than their innovations foretell,
     beyond what those of the first do, which rounding leaves."""
@@ -105,10 +119,10 @@ def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
 
 def without_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
     """The same fitted without any noise with a memory, of axes or of readings; None where it has none, or cannot follow its logs then."""
+    if not _has_memory(case, fitted):
+        return None
     hypothesis = fitted.fit.hypothesis
     gusts = list(gust_shares(case, hypothesis))
-    if not gusts and not hypothesis.reading_noise:
-        return None
     read = replace(fitted, fit=replace(fitted.fit, hypothesis=replace(hypothesis, reading_noise={})))
     return without_gusts(case, read, gusts)
 

@@ -19,6 +19,7 @@ from records.reasons import Decision
 from sim.effect import Effect, Values
 
 FOLD = 2.0  # from one size that is tried to the next
+FORETOLD = 0.5  # of what is needed, that a way must promise under the noise as it was: other noise adds a fifth to it
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,10 +39,14 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
     something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
     for it.
     """
-    promised = [(_promised(case, fitted.fit), fitted) for fitted in found]
-    promising = sorted((fitted.evidence + gain, place) for place, (gain, fitted) in enumerate(promised) if gain > 0.0)
     needed_nats = decisions.YIELDING_GAIN + further
     best, likeliest_fit, rules = found[0].evidence + needed_nats, None, list[Decision]()
+    promised = [(_promised(case, fitted.fit), fitted) for fitted in found]
+    promising = sorted(
+        (fitted.evidence + gain, place)
+        for place, (gain, fitted) in enumerate(promised)
+        if gain > FORETOLD * (best - fitted.evidence)
+    )
     yields = dict[str, Values]()
     for _, place in promising[: -decisions.YIELDING_FITTED - 1 : -1]:
         fitted = found[place]

@@ -38,12 +38,16 @@ def test_shares_are_a_softmax_of_evidence_prior_further_effects_and_hold_out() -
 
 
 def test_whether_anything_explains_is_a_logistic_law_of_what_is_left() -> None:
-    # Truth by hand: 1 - ln 10 + 0.5 ln 100 + 2 x 0.25 = 1.5, and 0.3 less where the first is of several effects.
-    assert LAW.explained(TOLD) == pytest.approx(1.0 / (1.0 + np.exp(-1.5)))
+    # Truth by hand: the first gains 90 of 99 nats, and 9 + 9 are left beside it; 0.3 less where it is of several effects.
+    z = 1.0 - np.log(19.0) + 0.5 * np.log(91.0) + 2.0 * 0.25
+    assert LAW.explained(TOLD) == pytest.approx(1.0 / (1.0 + np.exp(-z)))
     joint = replace(TOLD, candidates=(replace(ONE, evidence_nats=0.0), TWO))
-    assert LAW.explained(joint) == pytest.approx(1.0 / (1.0 + np.exp(-1.2)))
-    assert features(TOLD, ONE) == pytest.approx((np.log(10.0), np.log(100.0), 0.25, 0.0))
-    assert features(replace(TOLD, favour=None), TWO)[2:] == (0.0, 1.0)
+    z = 1.0 - np.log(10.0) + 0.5 * np.log(100.0) + 2.0 * 0.25 - 0.3
+    assert LAW.explained(joint) == pytest.approx(1.0 / (1.0 + np.exp(-z)))
+    assert features(TOLD, np.array([0.6, 0.4, 0.0])) == pytest.approx((np.log(19.0), np.log(91.0), 0.25, 0.0))
+    assert features(replace(TOLD, favour=None), np.array([0.4, 0.6, 0.0]))[2:] == (0.0, 1.0)
+    parameters = features(replace(TOLD, parameters_nats=60.0), np.array([0.2, 0.2, 0.6]))
+    assert parameters == pytest.approx((np.log(49.0), np.log(61.0), 0.25, 0.0))
 
 
 def test_where_nothing_was_tried_nothing_explains() -> None:

@@ -112,7 +112,7 @@ def test_a_plant_that_lacks_something_is_not_taken_for_commands_logged_late(
 
 
 def test_an_arm_that_lacks_its_friction_is_not_taken_for_commands_logged_late() -> None:
-    assert told(effect_library(arm()), arm_log(RUB, seed=32, seconds=SECONDS)) == []
+    assert "columns_late" not in told(effect_library(arm()), arm_log(RUB, seed=32, seconds=SECONDS))
 
 
 @pytest.mark.parametrize(("effects", "promised"), [({}, False), ({"theta_sensor.backlash": {"width": 0.05}}, True)])

@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.process_noise import LEAST_NOISE, axis_noise
-from diagnosis.fit.scoring import likeliest_numbers
+from diagnosis.fit.scoring import LITTLE_PROMISED, likeliest_numbers
 from tests.diagnosis.arm import plain_linearisation
 
 
@@ -40,5 +40,5 @@ def test_noise_that_is_next_to_none_is_found_again() -> None:
     best, value = likeliest_numbers(case, fitted, axis_noise(case, fitted))
     begun = replace(best, process_noise=np.full_like(best.process_noise, LEAST_NOISE))
     found, there = likeliest_numbers(case, begun, axis_noise(case, begun))
-    assert there > value - 0.3
+    assert there > value - LITTLE_PROMISED
     assert found.process_noise == pytest.approx(best.process_noise, abs=0.1)
