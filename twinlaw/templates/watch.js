@@ -2,6 +2,7 @@
 // The page of `twinlaw watch`: events come from the server that served it, wishes go back with the token behind # in the address.
 const TOKEN = location.hash.slice(1);
 const KEPT_S = 65;                       // of rows, a little more than can be shown
+const BREAK = 3.5;                       // usual steps: where more rows than three are missing a line ends
 const INK = "#1b1f24", SOFT = "#57606a", GRID = "#e3e8ec";
 // Okabe and Ito's colours, and a dash of its own for each line, so that nothing rests on colour alone.
 const MEASURED = { color: "#0072b2", dash: [], width: 2 };
@@ -301,14 +302,23 @@ function stroke(pen, x0, y0, x1, y1) { pen.beginPath(); pen.moveTo(x0, y0); pen.
 function trace(pen, line, from, x, y) {
   const first = Math.max(0, line.t.findIndex((t) => t >= from) - 1);
   pen.beginPath(); pen.strokeStyle = line.style.color; pen.lineWidth = line.style.width; pen.setLineDash(line.style.dash); pen.lineJoin = "round";
+  const longest = BREAK * usualStep(line.t, first);
   let down = false;
   for (let k = first; k < line.t.length; k++) {
     if (line.v[k] === null || line.v[k] === undefined) { down = false; continue; }
+    // Where rows are missing nothing was measured or predicted, and no line says that it was.
+    if (k > first && line.t[k] - line.t[k - 1] > longest) down = false;
     if (down && line.held) pen.lineTo(x(line.t[k]), y(line.v[k - 1]));
     if (down) pen.lineTo(x(line.t[k]), y(line.v[k])); else pen.moveTo(x(line.t[k]), y(line.v[k]));
     down = true;
   }
   pen.stroke();
+}
+
+function usualStep(t, first) {
+  const steps = [];
+  for (let k = Math.max(first + 1, t.length - 200); k < t.length; k++) steps.push(t[k] - t[k - 1]);
+  return steps.sort((a, b) => a - b)[Math.floor(steps.length / 2)] ?? 0;
 }
 
 function frame() {
