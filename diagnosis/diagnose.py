@@ -13,7 +13,7 @@ from diagnosis.answer import gap, no_gap
 from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred, surely_better
-from diagnosis.decide.rows import EARLY, LATE, demand_rows
+from diagnosis.decide.rows import EARLY, LATE, demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Foretold, Tried, Weighed, first_share, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -293,6 +293,7 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     if holdout is not None:
         chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)
         seen, notes = seen.because(*rules), (*notes, *told)
+    notes = rows_in_doubt(seen.case, chosen, notes) if chosen.effects else notes
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
 
 

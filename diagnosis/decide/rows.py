@@ -17,6 +17,7 @@ from diagnosis.decide.wiring import fitted_or_none, is_strained
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.filter.filter_input import READINGS, FilterInput, beginning
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import gain_over, settled
 from diagnosis.hypothesis.case import Case, FilteredLog
@@ -28,6 +29,7 @@ from records.reasons import Note
 
 LATE, EARLY = 1, -1
 NUMBERS = {1: "one row", 2: "two rows", 3: "three rows"}
+OTHER_ROWS = ("columns_late", "columns_early")  # kinds of notes
 Array = NDArray[np.float64]
 
 
@@ -99,6 +101,21 @@ def most_by_an_effect(case: Case, usual: Fit) -> float:
     """What the best effect gains beside the plant's fit, in nats, as a score test promises it."""
     tests = score_effects(case, linearised(case, usual), case.library.candidates)
     return max((entry.gain for entry in tests), default=0.0)
+
+
+def rows_in_doubt(case: Case, found: FittedHypothesis, notes: Sequence[Note]) -> tuple[Note, ...]:
+    """The notes without those on columns in other rows, where what was found explains them: a lag or a delay follows the plant as a column
+    that stands early does, and beside it moving columns gains nothing."""
+    if not any(note.kind in OTHER_ROWS for note in notes):
+        return tuple(notes)
+    short = case.with_flights([_begun(flight) for flight in case.flights])
+    usual = fit(short, found.fit.hypothesis, rounds=0)
+    if usual is None:
+        return tuple(notes)
+    asked, model = Asked(short, usual), case.library.bound.model
+    slips = (*asked.commands, *_one_column(len(model.inputs), len(model.outputs)))
+    gain = max(thread_map(asked.promised, slips)) - usual.promised
+    return tuple(note for note in notes if gain > decisions.ROWS_GAIN or note.kind not in OTHER_ROWS)
 
 
 @dataclass(frozen=True)
@@ -208,7 +225,8 @@ def _furthest(found: Moved, asked: Callable[[Misplaced], Moved]) -> Moved:
 
 
 def _note(case: Case, found: Moved) -> Note:
-    kind = "columns_late" if found.slip.way == LATE else "columns_early"
+    late, early = OTHER_ROWS
+    kind = late if found.slip.way == LATE else early
     numbers = {"rows": found.slip.rows, "gain_nats": found.gain}
     return Note(kind, _names(case, found.slip), numbers, f"perhaps {_in_words(case, found)}")
 

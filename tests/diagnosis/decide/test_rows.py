@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.rows import EARLY, LATE, Misplaced, demand_rows, most_by_an_effect
+from diagnosis.decide.rows import EARLY, LATE, Misplaced, demand_rows, most_by_an_effect, rows_in_doubt
+from diagnosis.fit.evidence import as_fitted
+from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
@@ -80,6 +82,19 @@ def test_commands_in_their_rows_are_not_doubted(library: EffectLibrary, fly: Fly
 
 def test_what_a_plant_may_be_itself_is_told_where_it_is_not_to_be_refused(library: EffectLibrary, fly: Fly) -> None:
     assert told(library, logged(fly(31, seconds=SECONDS), Misplaced((0, 1), -1)), (LATE,)) == ["columns_early"]
+
+
+def test_a_delay_that_was_found_explains_commands_that_seem_early(library: EffectLibrary, fly: Fly) -> None:
+    """Truth: the columns of both commands stand two rows early, as if both acted two rows late."""
+    delays = {"main_input.delay": {"tau": 0.02}, "tail_input.delay": {"tau": 0.02}}
+    case = make_case(library, [logged(fly(31, seconds=SECONDS), Misplaced((0, 1), -2))])
+    nominal = plain_fit(case)
+    notes = demand_rows(case, nominal, "the logs to explain", (LATE,))
+    assert [note.kind for note in notes] == ["columns_early"]
+    late = fit(case, nominal.hypothesis.with_effects(delays))
+    assert late is not None
+    assert rows_in_doubt(case, as_fitted(case, late), notes) == ()
+    assert rows_in_doubt(case, as_fitted(case, nominal), notes) == notes
 
 
 @pytest.mark.soak
