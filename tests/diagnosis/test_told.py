@@ -11,7 +11,6 @@ from diagnosis.baselines.residual_size import by_residual_size
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.detection import detect
 from diagnosis.detect.score_tests import ScoreTest
-from diagnosis.diagnose import borne_out
 from diagnosis.experiment.revealing import revealing_experiment
 from diagnosis.explain.notes import notes_of
 from diagnosis.explain.sentences import plain_sentence, sentence, sentences
@@ -21,6 +20,7 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Material, Seen
 from diagnosis.search.retune import places_of, retune
+from diagnosis.standing import borne_out
 from diagnosis.validate.prediction import predictions
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.reasons import Note

@@ -10,7 +10,6 @@ from diagnosis.decide.weighing import Tried, Weighed
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
-from diagnosis.diagnose import of_consequence
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
@@ -18,6 +17,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.result import Judged, Seen
+from diagnosis.standing import of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import arm_case, arm_log
 

@@ -12,13 +12,14 @@ from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
-from diagnosis.diagnose import Material, borne_out, diagnose, of_consequence
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import nominal_fit, plain_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Judged, Result, Seen
+from diagnosis.standing import borne_out, of_consequence
 from diagnosis.validate.score import Score
 from records.log import RunLog
 from sim.added_effects import library

@@ -12,13 +12,13 @@ from diagnosis.decide.weighing import Tried, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
-from diagnosis.diagnose import borne_out, confirmed_by
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, Free
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Seen
 from diagnosis.search.beam import Search
+from diagnosis.standing import borne_out, confirmed_by
 from sim.added_effects import every_effect
 from sim.effect import EffectParameter
 from tests.plants import bound

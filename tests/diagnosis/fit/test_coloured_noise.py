@@ -7,12 +7,13 @@ import pytest
 from scipy.signal import lfilter
 
 from diagnosis import decisions
-from diagnosis.diagnose import Material, _beside_noise, _scored, diagnose
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.gauss_newton import fit, likelihood_of
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.hypothesis import noise_on, nominal_hypothesis
 from diagnosis.library.reading_noise import ReadingNoise
+from diagnosis.seeing import beside_noise, scored
 from records.log import RunLog
 from sim.effect import Role
 from tests.diagnosis.arm import LONG_S, PERIOD_S, arm, arm_case, arm_log
@@ -74,8 +75,8 @@ def test_errors_that_follow_a_name_are_left_for_it_where_that_is_far_likelier() 
     plain = nominal_fit(case).hypothesis
     noisy = fit(case, replace(plain, reading_noise={"theta_rad": ReadingNoise(SD_RAD, TIME_S)}))
     assert noisy is not None
-    seen = _scored(case, None, noisy, ())
-    after = _beside_noise(replace(seen, detection=replace(seen.detection, p=1.0)))
+    seen = scored(case, None, noisy, ())
+    after = beside_noise(replace(seen, detection=replace(seen.detection, p=1.0)))
     assert after.retuned.fit.hypothesis.reading_noise == {}
     assert after.detection.p < decisions.ALARM
     assert [(rule.rule, rule.of) for rule in after.decisions[-1:]] == [("over_noise", "arm.flexible_mode")]

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.diagnose import _detected
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import SETTLED_GAIN, nominal_fit, plain_beside
 from diagnosis.hypothesis.case import Case
+from diagnosis.seeing import detected
 from tests.diagnosis.arm import arm_case, arm_log
 
 RUB = {"arm.coulomb": {"b": 1e-5}}
@@ -50,6 +50,6 @@ def test_from_another_hill_the_plant_comes_back(case: Case) -> None:
 
 
 def test_no_gap_asks_for_no_second_fit(case: Case) -> None:
-    seen = _detected(case, None)
+    seen = detected(case, None)
     assert seen.detection.p > 1e-3
     assert not [rule for rule in seen.decisions if rule.rule == "plain_again"]
