@@ -87,3 +87,8 @@ def test_the_learned_law_says_what_such_a_law_must() -> None:
     assert law.hold_out > 0.0
     assert 0.0 < law.partly_single < law.partly_several < 1.0
     assert len(fields(law)) <= 12
+
+
+def test_a_re_tune_that_gains_nothing_beside_forms_that_gain_thousands_of_nats_is_unknown_by_the_learned_law() -> None:
+    assert weigh(tried(left=4000.0, retune=0.0)).unknown > 0.8
+    assert weigh(tried(left=5.0, retune=4000.0)).unknown < 0.5
