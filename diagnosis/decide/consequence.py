@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.weighing import Tried, Weighed, weigh
-from diagnosis.decisions import decided
+from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -39,10 +39,11 @@ def consequence(
 
 
 def without_idle(logs: FittedLogs, tried: Tried) -> tuple[Tried, tuple[Decision, ...]]:
-    """What was tried, without hypotheses one of whose effects predicts the logs no better than the likeliest of all without it; and the
+    """What was tried, without hypotheses one of whose effects predicts the logs hardly better than the likeliest of all without it; and the
     rules.
 
-    What such an effect gains in nats it gains of the noise: it says nothing of what it stands beside.
+    What such an effect gains in nats it gains of the noise, or of what the others' forms are a little off: it says nothing of what it
+    stands beside.
     """
     asked, idle, rules = set[FittedHypothesis](), set[FittedHypothesis](), list[Decision]()
     while (entry := _next(weigh(tried.without(idle)), asked)) is not None:
@@ -51,10 +52,12 @@ def without_idle(logs: FittedLogs, tried: Tried) -> tuple[Tried, tuple[Decision,
         if fewer is None:
             continue
         gain = logs.gain(entry.fit.hypothesis, fewer.fit.hypothesis)
+        whole = logs.gain(entry.fit.hypothesis, tried.nominal.fit.hypothesis)
+        least = max(float(decisions.MATTERS), decisions.FORMS_OFF * whole)
         left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
-        outcome = f"{left} is left out" if gain < decisions.MATTERS else f"{left} matters"
-        rules.append(decided("each_matters", " + ".join(entry.effects), gain, decisions.MATTERS, outcome))
-        idle |= {entry} if gain < decisions.MATTERS else set()
+        outcome = f"{left} is left out" if gain < least else f"{left} matters"
+        rules.append(held_against("each_matters", " + ".join(entry.effects), gain, least, "nats a reading", outcome))
+        idle |= {entry} if gain < least else set()
     return tried.without(idle), tuple(rules)
 
 

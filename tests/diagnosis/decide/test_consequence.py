@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis import decisions
 from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.weighing import Tried, Weighed
 from diagnosis.detect.detection import Detection, FormScores
@@ -72,6 +73,21 @@ def test_an_effect_that_predicts_no_better_is_left_out_and_one_that_does_stays()
     kept, rules = without_idle(logs, replace(tried, named=(other, both)))
     assert kept.named == (other, both)
     assert [one.outcome for one in rules] == ["arm.coulomb matters"]
+
+
+def test_an_effect_that_does_a_small_part_of_what_its_fellow_does_is_left_out() -> None:
+    # Truth: dry friction of 0.4 mN m and a thirteenth of that as a constant force: certain, and less than friction's form may be off.
+    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
+    case = arm_case(arm_log({**rub, **pull}, seed=76))
+    both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
+    found, (rule,) = without_idle(FittedLogs(case), Tried((both, alone), plain, case.library, 5.0))
+    assert found.named == (alone,)
+    assert rule.value is not None
+    assert rule.limit is not None
+    assert decisions.MATTERS < rule.value < rule.limit
+    # Beside a plant that predicts as well but for the force it is all that there is.
+    found, _ = without_idle(FittedLogs(case), Tried((both, alone), alone, case.library, 5.0))
+    assert found.named == (both, alone)
 
 
 @pytest.mark.parametrize("moved", [False, True])
