@@ -63,8 +63,8 @@ def plain_beside(case: Case, named: Fit) -> Fit | None:
 
 
 def with_memory(case: Case, found: Fit) -> Fit:
-    """The fit with noise with a memory where the logs tell of it; asked anew beside what was taken, as errors of readings hide a torque that
-    comes and goes, and the other way round."""
+    """The fit with noise with a memory where the logs tell of it; asked anew beside what was taken, as errors of readings hide a torque
+    that comes and goes, and the other way round."""
     for _ in range(SETTLING_ROUNDS):
         coloured = with_colours(case, found)
         if coloured is found.hypothesis:
