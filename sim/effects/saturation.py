@@ -16,6 +16,8 @@ from sim.prior import COMMON
 # is larger than that, a quarter beyond it. Nothing is decided by how far.
 NEVER = 30.0
 BEYOND = 1.25
+# The least limit, as a share of the input's size: slow rigs are driven by a fiftieth of what their driver could give, and it may end within.
+LEAST = 0.002
 
 # Of a corner, as a share of where it lies.
 ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.2,), refining=True)
@@ -31,7 +33,7 @@ def effects(model: Model) -> Iterator[Effect]:
             name=f"{place}.saturation",
             depends=f"limit of {u}",
             parameters=(
-                EffectParameter("limit", entry.unit, 0.05 * size, never, 0.6 * size, never, grid, role=Role.LEVEL),
+                EffectParameter("limit", entry.unit, LEAST * size, never, 0.6 * size, never, grid, role=Role.LEVEL),
                 ROUNDING,
             ),
             equation=f"{u} -> max(-limit, min(limit, {u})), its corner rounded over limit (1 -+ w)",
