@@ -11,8 +11,8 @@ from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.search.draughts import with_noise_beside, with_noise_of
 from diagnosis.search.exchange import exchange, fit_twins, is_twin
 from diagnosis.search.fitting import Job, is_astray, keep_better, once_more, refined, rough
@@ -86,11 +86,12 @@ def alone(
 
 
 def scored_as_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
-    """Score tests from the plant as stated, by a filter that expects any motion, where the nominal plant went astray: its parameters took
-    the part of what is missing then, which shows nothing beside them."""
+    """Score tests from the plant as stated, under the white noise that it then needs, where the nominal plant went astray: its parameters
+    took the part of what is missing then, which shows nothing beside them."""
     if not is_astray(nominal.hypothesis, decisions.ASTRAY):
         return []
-    stated = fit(case, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE)), rounds=0)
+    start = replace(nominal.hypothesis, theta=np.zeros_like(nominal.hypothesis.theta))
+    stated = fit(case, with_process_noise(case, start), rounds=0)
     return [] if stated is None else score_effects(case, linearised(case, stated), case.library.candidates)
 
 

@@ -21,7 +21,7 @@ def effects(model: Model) -> Iterator[Effect]:
         if place not in model.places.encoders:
             continue
         size = sensor.size
-        grid = tuple(share * size for share in (0.003, 0.01, 0.03))
+        grid = tuple(share * size for share in (0.003, 0.01, 0.03, 0.1))
         yield Effect(
             name=f"{place}.backlash",
             depends=f"play of {short(sensor.output)}",
