@@ -12,6 +12,7 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on, passes
+from diagnosis.search.exchange import is_twin
 from diagnosis.validate.fitted_logs import FittedLogs
 from jobs.thread_map import thread_map
 from records.reasons import Decision
@@ -43,22 +44,47 @@ def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tupl
 
 
 def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
-    """Hypotheses with the noise with a memory that the logs tell of beside their names, where that is likelier; none where beside the best
-    of them it takes what is no noise.
+    """Hypotheses with the noise with a memory that the logs tell of beside their names, each with its own, where that is likelier; none
+    where beside the best of them it takes what is no noise.
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
-    Where it does so beside the best, evidence under it is not to be compared with evidence without. What it cannot bring near the best is
-    not asked.
+    Where it does so beside the best, evidence under it is not to be compared with evidence without. The best of each number of effects is
+    asked, with its twins, and of the others those that it could bring near that.
     """
     best = max(fitted, key=lambda entry: entry.evidence, default=None)
     first = None if best is None else _with_memory(case, best)
     if best is None or first is None:
         return []
-    others = [entry for entry in fitted if entry is not best]
-    others = _in_reach(case, first, others)
-    found = thread_map(lambda entry: _with_memory(case, entry, None if first is best else first), others)
-    return [first, *(entry for entry in found if entry is not None)]
+    sizes = sorted({len(entry.effects) for entry in fitted})
+    groups = [[entry for entry in fitted if len(entry.effects) == size] for size in sizes]
+    return [entry for group in groups for entry in _noisy_of_a_size(case, group, best, first)]
+
+
+def _noisy_of_a_size(
+    case: Case, group: Sequence[FittedHypothesis], best: FittedHypothesis, first: FittedHypothesis
+) -> list[FittedHypothesis]:
+    """Hypotheses of one number of effects with their noise: the likeliest, its twins, and what comes near it; `first` is the `best` of all
+    with its own."""
+    own = max(group, key=lambda entry: entry.evidence)
+    noisy = first if own is best else _own_noise(case, own, first)
+    if noisy is None:
+        return []
+    others = [entry for entry in group if entry is not own]
+    twins = [entry for entry in others if is_twin(case, entry, own)]
+    others = twins + _in_reach(case, noisy, [entry for entry in others if entry not in twins])
+    found = thread_map(lambda entry: first if entry is best else _own_noise(case, entry, first), others)
+    return [noisy, *(entry for entry in found if entry is not None)]
+
+
+def _own_noise(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> FittedHypothesis | None:
+    """The hypothesis with the noise of the first; or with what it shows by itself, where its innovations promise more and that is
+    likelier."""
+    shared = _with_memory(case, fitted, first)
+    if shared is not None and _foretold(case, shared) - _foretold(case, first) < decisions.TAKEN_IN:
+        return shared
+    own = _with_memory(case, fitted)
+    return max((entry for entry in (shared, own) if entry is not None), key=lambda entry: entry.evidence, default=None)
 
 
 def with_noise_of(case: Case, fitted: Sequence[FittedHypothesis], known: FittedHypothesis) -> list[FittedHypothesis]:
