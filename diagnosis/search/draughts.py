@@ -50,7 +50,7 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
     Where it does so beside the best, evidence under it is not to be compared with evidence without. The best of each number of effects is
-    asked, with its twins, and of the others those that it could bring near that.
+    asked, and of the others those that it could bring near that.
     """
     best = max(fitted, key=lambda entry: entry.evidence, default=None)
     first = None if best is None else _with_memory(case, best)
@@ -64,15 +64,13 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
 def _noisy_of_a_size(
     case: Case, group: Sequence[FittedHypothesis], best: FittedHypothesis, first: FittedHypothesis
 ) -> list[FittedHypothesis]:
-    """Hypotheses of one number of effects with their noise: the likeliest, its twins, and what comes near it; `first` is the `best` of all
-    with its own."""
+    """Hypotheses of one number of effects with their noise, the likeliest and what comes near it; `first` is the `best` of all with its
+    own."""
     own = max(group, key=lambda entry: entry.evidence)
     noisy = first if own is best else _own_noise(case, own, first)
     if noisy is None:
         return []
-    others = [entry for entry in group if entry is not own]
-    twins = [entry for entry in others if is_twin(case, entry, own)]
-    others = twins + _in_reach(case, noisy, [entry for entry in others if entry not in twins])
+    others = _in_reach(case, own, noisy, [entry for entry in group if entry is not own])
     found = thread_map(lambda entry: first if entry is best else _own_noise(case, entry, first), others)
     return [noisy, *(entry for entry in found if entry is not None)]
 
@@ -101,13 +99,21 @@ def _has_memory(case: Case, fitted: FittedHypothesis) -> bool:
     return bool(gust_shares(case, hypothesis) or hypothesis.reading_noise)
 
 
-def _in_reach(case: Case, first: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
-    """Those of the others that noise with a memory could bring near the first: it gains no more than their innovations foretell,
-    beyond what those of the first do, which rounding leaves."""
-    left = _foretold(case, first)
+def _in_reach(
+    case: Case, own: FittedHypothesis, noisy: FittedHypothesis, others: Sequence[FittedHypothesis]
+) -> list[FittedHypothesis]:
+    """Those of the others that noise with a memory could bring near the likeliest, `own`, which has become `noisy` with its own: it gains
+    about what their innovations foretell, beyond what those of the likeliest do, which rounding leaves. Between twins noise decides: they
+    are asked where they lack no more than it gained."""
+    left = _foretold(case, noisy)
     promised = thread_map(lambda entry: max(_foretold(case, entry) - left, 0.0), others)
-    near = first.evidence - decisions.NEAR_BEST
-    return [entry for entry, gain in zip(others, promised, strict=True) if entry.evidence + gain >= near]
+    near, gained = noisy.evidence - decisions.NEAR_BEST, noisy.evidence - own.evidence
+    told = zip(others, promised, strict=True)
+    return [
+        entry
+        for entry, gain in told
+        if entry.evidence + gain >= near or (is_twin(case, entry, own) and own.evidence - entry.evidence <= gained)
+    ]
 
 
 def _foretold(case: Case, fitted: FittedHypothesis) -> float:
