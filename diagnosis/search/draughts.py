@@ -71,7 +71,7 @@ def _noisy_of_a_size(
     if noisy is None:
         return []
     others = _in_reach(case, own, noisy, [entry for entry in group if entry is not own])
-    found = thread_map(lambda entry: first if entry is best else _own_noise(case, entry, first), others)
+    found = thread_map(lambda entry: _own_noise(case, entry, first), others)
     return [noisy, *(entry for entry in found if entry is not None)]
 
 

@@ -10,7 +10,7 @@ from diagnosis import decisions
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.gauss_newton import fit, likelihood_of
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import nominal_fit, with_memory
 from diagnosis.hypothesis.hypothesis import noise_on, nominal_hypothesis
 from diagnosis.library.reading_noise import ReadingNoise
 from diagnosis.seeing import beside_noise, scored
@@ -51,6 +51,15 @@ def test_they_are_found_with_size_and_time(log: RunLog) -> None:
 
 def test_an_encoder_alone_has_none() -> None:
     assert nominal_fit(arm_case(arm_log(seed=74))).hypothesis.reading_noise == {}
+
+
+def test_a_torque_that_comes_and_goes_is_found_beside_them() -> None:
+    # Truth: both; asked once more beside what was taken, nothing more is.
+    case = arm_case(misread(arm_log({"arm.gust": {"sigma": 3e-4, "T": 0.5}}, seed=74, seconds=LONG_S), 75))
+    found = nominal_fit(case)
+    assert "theta_rad" in found.hypothesis.reading_noise
+    assert "arm.gust" in found.hypothesis.effects
+    assert with_memory(case, found) is found
 
 
 def test_no_other_numbers_are_likelier(log: RunLog) -> None:

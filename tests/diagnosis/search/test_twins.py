@@ -12,7 +12,7 @@ from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.search.beam import beam_of, finalists
-from diagnosis.search.draughts import with_noise_beside
+from diagnosis.search.draughts import with_noise_beside, with_noise_of
 from diagnosis.search.exchange import fit_twins, is_twin, twins_of
 from diagnosis.search.fitting import refined
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
@@ -74,6 +74,16 @@ def test_a_smooth_torque_is_noise_and_no_lag_of_the_sensor(late: Case) -> None:
     assert drive.effects == ("input.lag",)
     assert "arm.gust" in drive.fit.hypothesis.effects
     assert sensor.evidence - drive.evidence < 3.0
+
+
+def test_what_is_fitted_later_gets_the_noise_of_what_it_is_compared_with(late: Case) -> None:
+    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    assert with_noise_of(late, [sensor], drive) == [sensor]
+    noisy = with_noise_beside(late, [drive])[0]
+    (found,) = with_noise_of(late, [sensor], noisy)
+    assert found.effects == sensor.effects
+    assert found.evidence > sensor.evidence
+    assert "arm.gust" in found.fit.hypothesis.effects
 
 
 def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> None:
