@@ -19,7 +19,7 @@ from records.reasons import Decision
 from sim.effect import Effect, Values
 
 FOLD = 2.0  # from one size that is tried to the next
-FORETOLD = 0.5  # of what is needed, that a way must promise under the noise as it was: other noise adds a fifth to it
+FORETOLD = 0.25  # of what is needed, that a way must promise with all else as it was: noise and parameters may bring twice as much again
 
 
 @dataclass(frozen=True, eq=False)
