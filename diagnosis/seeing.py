@@ -92,6 +92,7 @@ def beside_noise(seen: Seen) -> Seen:
 
 
 def alone_of(seen: Seen) -> Alone:
+    """Its single effects, fitted where that was not done yet."""
     return seen.begun or alone(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
 
 
@@ -101,6 +102,7 @@ def alarmed(p: float) -> bool:
 
 
 def false_alarm(of: str, p: float) -> Decision:
+    """The rule that asks whether a gap of the chance `p` without one is worth a cause."""
     return decided("false_alarm", of, p, decisions.ALARM, "a cause is looked for" if alarmed(p) else "no gap")
 
 

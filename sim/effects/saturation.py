@@ -16,7 +16,8 @@ from sim.prior import COMMON
 # is larger than that, a quarter beyond it. Nothing is decided by how far.
 NEVER = 30.0
 BEYOND = 1.25
-# The least limit, as a share of the input's size: slow rigs are driven by a fiftieth of what their driver gives, and it may end within.
+# The least limit, as a share of the input's size: slow rigs are driven by little of what their driver gives (EMPS of 10 V by 0.3 V), and
+# it may end within.
 LEAST = 0.002
 
 # Of a corner, as a share of where it lies.

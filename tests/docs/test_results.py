@@ -175,6 +175,14 @@ def test_the_figures_of_three_families_are_those_of_their_scores() -> None:
     assert told == [list(line) for line in zip(*map(_fresh, found), strict=True)]
 
 
+def test_what_the_learned_law_is_made_of_is_told_as_its_file_says() -> None:
+    law = json.loads((ROOT / "diagnosis" / "decide" / "comparison.json").read_text(encoding="utf-8"))
+    together, real = law["out_of_family"], law["families"]["real"]
+    assert f"is learned from {together['answers']} answers of {law['commit']} " in BLIND
+    errors = [f"{told[key]:.2f}" for told in (together, real) for key in ("calibration_error", "honest")]
+    assert "others' law: {}, honest {}; the real one {}, honest {}.".format(*errors) in BLIND
+
+
 def _shown(value: float | None) -> str:
     return "no case" if value is None else f"{value:.3f}"
 
