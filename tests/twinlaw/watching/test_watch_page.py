@@ -132,6 +132,19 @@ def test_a_log_is_replayed_with_its_controls(browser: Browser, watch: Open, carr
     page.wait_for("document.querySelector('#state').textContent === 'paused'")
 
 
+def test_a_line_ends_where_rows_are_missing(browser: Browser, watch: Open) -> None:
+    # Truth: rows every 10 ms, three missing and later a second: the pen (M: set down, L: drawn) is lifted at the second alone.
+    page = board_page(browser, watch())
+    way = """(() => {
+        let way = '';
+        const pen = {beginPath() {}, setLineDash() {}, stroke() {}, moveTo() { way += 'M'; }, lineTo() { way += 'L'; }};
+        const t = [0, 0.01, 0.02, 0.05, 0.06, 1.06, 1.07], v = t.map(() => 1);
+        trace(pen, {t, v, style: MEASURED}, 0, (t) => t, (v) => v);
+        return way;
+    })()"""
+    assert page.value(way) == "MLLLLML"
+
+
 def test_every_axis_has_numbers_enough_to_read_its_scale(browser: Browser, watch: Open) -> None:
     page = board_page(browser, watch())
     # Centres and widths over four decades; a scale takes two numbers, a third shows that it is even.
