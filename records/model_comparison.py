@@ -7,7 +7,8 @@
      likeliest by (2) and (3): what it gains, and what is left beside it of what the best and then free forms gain
 (5)  P_i          = P(explained) weight_i / sum of weights
 
-The rest is an effect's that no candidate explains; of that a share is right in part, as so many wrong names of one effect or several were.
+The rest is an effect's that no candidate explains; where the likeliest has a name, of that a share is right in part, as so many wrong
+names of one effect or several were.
 """
 
 from collections.abc import Mapping
@@ -104,15 +105,15 @@ class ComparisonLaw:
         return self.partly_several if first.further else self.partly_single
 
 
-def first_of(told: ModelComparison, shares: Array) -> Candidate | None:
-    """The candidate with the largest share; None where there is none."""
-    return told.candidates[int(np.argmax(shares[:-1]))] if told.candidates else None
+def likeliest_of(told: ModelComparison, shares: Array) -> Candidate | None:
+    """The candidate with the largest share; None where parameters alone have a larger one, or there is none."""
+    place = int(np.argmax(shares))
+    return told.candidates[place] if place < len(told.candidates) else None
 
 
 def features(told: ModelComparison, shares: Array) -> tuple[float, ...]:
     """What (4) is a function of, by the shares of (2) and (3)."""
-    place = int(np.argmax(shares))
-    first = told.candidates[place] if place < len(told.candidates) else None
+    first = likeliest_of(told, shares)
     evidence_nats = told.parameters_nats if first is None else first.evidence_nats
     gain_nats = max(evidence_nats or 0.0, 0.0)
     left_nats = told.left_nats + max(told.gain_nats - gain_nats, 0.0)

@@ -14,7 +14,7 @@ from blind.scoring.judge import filter_names, means, touches
 from blind.scoring.results import Names, Unreadable, names_of, read_answer
 from records.diagnosis import comparison_of
 from records.errors import BadInput
-from records.model_comparison import ComparisonLaw, ModelComparison, first_of
+from records.model_comparison import ComparisonLaw, ModelComparison, likeliest_of
 
 COMPARISON = "comparison"  # the key of diagnosis.json
 
@@ -36,9 +36,9 @@ class Example:
         return law.explained(self.told) * float(shares[place]), self.right[place]
 
     def partly(self, law: ComparisonLaw) -> tuple[bool, bool] | None:
-        """Whether the first is of several effects, and whether some of them is right; None where it is right."""
+        """Whether the likeliest is of several effects, and whether some of them is right; None where it is right, or has no name."""
         shares = law.shares(self.told)
-        first, place = first_of(self.told, shares), int(np.argmax(shares[:-1]))
+        first, place = likeliest_of(self.told, shares), int(np.argmax(shares))
         return None if first is None or self.right[place] else (first.further > 0, self.touching[place])
 
 

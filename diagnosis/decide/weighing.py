@@ -15,7 +15,7 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.search.exchange import is_twin
-from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, law_of
+from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, law_of, likeliest_of
 from records.reasons import Decision
 
 RANKED = 12  # hypotheses that are told of
@@ -93,7 +93,7 @@ def weigh(tried: Tried, foretold: Foretold | None = None, law: ComparisonLaw | N
     told = _comparison(tried, known)
     shares, explained = learnt.shares(told), learnt.explained(told)
     order = np.argsort(-shares[:-1], kind="stable")[:RANKED].tolist()
-    first = told.candidates[order[0]] if order else None
+    first = likeliest_of(told, shares)
     partly = (1.0 - explained) * learnt.partly(first)
     scale = learnt.scale_nats(told.formed_nats)
     return Weighed(
@@ -117,7 +117,7 @@ def _comparison(tried: Tried, foretold: Foretold) -> ModelComparison:
             Candidate(
                 " + ".join(entry.effects),
                 entry.evidence - nominal.evidence,
-                prior_odds(entry, effects, tried.library.frictionless, tried.library.steps) - _beyond_spread(entry),
+                prior_odds(entry, effects, tried.library.frictionless, tried.library.steps) - beyond_spread(entry),
                 foretold.nats.get(entry, 0.0),
             )
             for entry in tried.named
@@ -130,7 +130,7 @@ def _comparison(tried: Tried, foretold: Foretold) -> ModelComparison:
     )
 
 
-def _beyond_spread(entry: FittedHypothesis) -> float:
+def beyond_spread(entry: FittedHypothesis) -> float:
     """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
     beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - decisions.FREE_SPREAD, 0.0)
     return 0.5 * float(beyond @ beyond)
@@ -143,7 +143,7 @@ def _read_off(tried: Tried, first: FittedHypothesis) -> FittedHypothesis:
 
 
 def _rules(told: ModelComparison, first: Candidate | None, scale: float, explained: float) -> tuple[Decision, ...]:
-    of = "nothing" if first is None else first.effect
+    of = "plant" if first is None else first.effect
     return (
         held_against("told_apart", of, told.gain_nats, scale, "nats", "apart" if told.gain_nats > scale else "alike"),
         held_against("forms_left", of, told.left_nats, told.gain_nats, "nats", "counts"),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, features, first_of
+from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, features, likeliest_of
 
 LAW = ComparisonLaw(
     size=np.log(2.0),
@@ -54,13 +54,19 @@ def test_where_nothing_was_tried_nothing_explains() -> None:
     nothing = ModelComparison((), 0.0, 0.0, 500.0)
     assert LAW.shares(nothing).tolist() == [0.0]
     assert LAW.explained(nothing) == 0.0
-    assert (first_of(nothing, LAW.shares(nothing)), LAW.partly(None)) == (None, 0.0)
+    assert (likeliest_of(nothing, LAW.shares(nothing)), LAW.partly(None)) == (None, 0.0)
 
 
 def test_parameters_alone_may_explain() -> None:
     alone = ModelComparison((), 60.0, 0.0, 5.0, None, 60.0)
     assert LAW.shares(alone).tolist() == [1.0]
+    assert likeliest_of(alone, LAW.shares(alone)) is None
     assert LAW.explained(alone) == pytest.approx(1.0 / (1.0 + np.exp(-(1.0 - np.log(6.0) + 0.5 * np.log(61.0)))))
+
+
+def test_where_parameters_alone_are_likelier_no_name_is_the_likeliest() -> None:
+    assert likeliest_of(TOLD, np.array([0.6, 0.4, 0.0])) is ONE
+    assert likeliest_of(TOLD, np.array([0.3, 0.2, 0.5])) is None
 
 
 def test_a_wrong_name_of_several_effects_is_oftener_right_in_part() -> None:
