@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.weighing import Tried, Weighed, weigh
+from diagnosis.decide.weighing import Tried, Weighed, beyond_spread, weigh
 from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
@@ -43,7 +43,7 @@ def without_idle(logs: FittedLogs, tried: Tried) -> tuple[Tried, tuple[Decision,
     rules.
 
     What such an effect gains in nats it gains of the noise, or of what the others' forms are a little off: it says nothing of what it
-    stands beside.
+    stands beside. Where the plant's parameters leave their spread to take an effect's part, it is not idle.
     """
     asked, idle, rules = set[FittedHypothesis](), set[FittedHypothesis](), list[Decision]()
     while (entry := _next(weigh(tried.without(idle)), asked)) is not None:
@@ -51,14 +51,23 @@ def without_idle(logs: FittedLogs, tried: Tried) -> tuple[Tried, tuple[Decision,
         fewer = _one_less(entry, tried.named)
         if fewer is None:
             continue
-        gain = logs.gain(entry.fit.hypothesis, fewer.fit.hypothesis)
-        whole = logs.gain(entry.fit.hypothesis, tried.nominal.fit.hypothesis)
-        least = max(float(decisions.MATTERS), decisions.FORMS_OFF * whole)
-        left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
-        outcome = f"{left} is left out" if gain < least else f"{left} matters"
-        rules.append(held_against("each_matters", " + ".join(entry.effects), gain, least, "nats a reading", outcome))
-        idle |= {entry} if gain < least else set()
+        rule, matters = _matters(logs, tried, entry, fewer)
+        rules.append(rule)
+        idle |= set() if matters else {entry}
     return tried.without(idle), tuple(rules)
+
+
+def _matters(logs: FittedLogs, tried: Tried, entry: FittedHypothesis, fewer: FittedHypothesis) -> tuple[Decision, bool]:
+    """The rule that asks whether the effect that a hypothesis has beside a `fewer` one is not idle, and its answer."""
+    of, left = " + ".join(entry.effects), " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
+    bent = beyond_spread(fewer) - beyond_spread(entry)
+    if bent > decisions.TAKEN_IN:
+        return decided("parameters_instead", of, bent, decisions.TAKEN_IN, f"{left} matters"), True
+    gain = logs.gain(entry.fit.hypothesis, fewer.fit.hypothesis)
+    whole = logs.gain(entry.fit.hypothesis, tried.nominal.fit.hypothesis)
+    least = max(float(decisions.MATTERS), decisions.FORMS_OFF * whole)
+    outcome = f"{left} matters" if gain >= least else f"{left} is left out"
+    return held_against("each_matters", of, gain, least, "nats a reading", outcome), gain >= least
 
 
 def _next(weighed: Weighed, asked: Set[FittedHypothesis]) -> FittedHypothesis | None:

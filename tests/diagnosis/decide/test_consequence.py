@@ -97,6 +97,20 @@ def test_an_effect_that_does_a_small_part_of_what_its_fellow_does_is_left_out() 
     assert found.named == (both, alone)
 
 
+def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_idle() -> None:
+    # Truth: the same small force. Without it a parameter stands nine standard deviations from its file, which costs 18 nats.
+    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
+    case = arm_case(arm_log({**rub, **pull}, seed=76))
+    both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
+    theta = alone.fit.hypothesis.theta.copy()
+    theta[0] = 9.0
+    bent = replace(alone, fit=replace(alone.fit, hypothesis=replace(alone.fit.hypothesis, theta=theta)))
+    both = surely(both)
+    found, rules = without_idle(FittedLogs(case), Tried((both, bent), plain, case.library, 5.0))
+    assert found.named == (both, bent)
+    assert [(rule.rule, rule.value) for rule in rules] == [("parameters_instead", pytest.approx(18.0))]
+
+
 @pytest.mark.parametrize("moved", [False, True])
 def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_file(moved: bool) -> None:
     # Truth: a reading late by 1 ms, which no prediction shows. A plant that follows its logs as stated lacks nothing that matters.
