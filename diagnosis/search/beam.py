@@ -14,7 +14,7 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.draughts import with_noise_beside, with_noise_of
-from diagnosis.search.exchange import exchange, fit_twins, is_twin
+from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink
 from diagnosis.search.fitting import Job, is_astray, keep_better, once_more, refined, rough
 from diagnosis.search.own_events import with_own_events
 from jobs.thread_map import thread_map
@@ -105,6 +105,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         if not grown or not _fit_all(case, grown, found, best[0]):
             break
         exchange(case, found, worth)
+        shrink(case, found)
         fit_twins(case, found, _best(found))
         if _best(found).evidence <= best[0].evidence:
             break

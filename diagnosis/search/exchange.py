@@ -7,8 +7,9 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
@@ -27,6 +28,25 @@ def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: S
         if better is None:
             return
         best = found[frozenset(better.effects)] = better
+
+
+def shrink(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
+    """The best of the largest size once more without each effect in turn, where that was not found yet: what first showed beside a wrong
+    effect may do without it (a floating search: Pudil, Novovicova and Kittler 1994)."""
+    size = max(len(names) for names in found)
+    largest = sorted((e for e in found.values() if len(e.effects) == size > 2), key=lambda entry: -entry.evidence)
+    near = [entry for entry in largest if entry.evidence > largest[0].evidence - decisions.NEAR_BEST]
+    fewer = {frozenset(entry.effects) - {name}: (entry, name) for entry in reversed(near) for name in entry.effects}
+    wanted = [job for names, job in fewer.items() if names not in found]
+    starts = [start for start in thread_map(lambda job: _without(case, *job), wanted) if start is not None]
+    begun = [as_fitted(case, start) for start in starts]
+    keep_better(found, [*begun, *(entry for entry in thread_map(lambda fit: refined(case, fit), begun) if entry)])
+
+
+def _without(case: Case, fitted: FittedHypothesis, name: str) -> Fit | None:
+    """The hypothesis fitted without one of its effects, from where the others were."""
+    start = _left(case, fitted, name)
+    return None if start is None else fit(case, start.hypothesis, rounds=4)
 
 
 def fit_twins(
@@ -71,19 +91,27 @@ def _exchanged(
     jobs = [job for jobs in thread_map(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
     fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job), jobs) if entry]
     keep_better(found, fitted)
-    first = max(fitted, key=lambda entry: entry.evidence, default=None)
-    if first is None or first.evidence < best.evidence - decisions.NEAR_BEST:
-        return None
-    end = refined(case, first)
-    return end if end is not None and end.evidence > best.evidence else None
+    first = max((entry.evidence for entry in fitted), default=-np.inf)
+    near = [entry for entry in fitted if entry.evidence > max(first, best.evidence) - decisions.NEAR_BEST]
+    ends = [entry for entry in thread_map(lambda entry: refined(case, entry), near) if entry]
+    keep_better(found, ends)
+    end = max(ends, key=lambda entry: entry.evidence, default=best)
+    return end if end.evidence > best.evidence else None
 
 
 def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Job]:
     """Effects that promise most in the place of `name`, all else as it was fitted."""
-    hypothesis = fitted.fit.hypothesis
-    start = fit(case, hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if n != name}), rounds=0)
+    start = _left(case, fitted, name)
     if start is None:
         return []
     score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
     least = max(decisions.TAKEN_IN, decisions.NEARLY_AS_GOOD * (fitted.fit.log_likelihood - start.log_likelihood))
     return [Job(start, entry) for entry in score_tests if entry.gain > least][: decisions.NEXT]
+
+
+def _left(case: Case, fitted: FittedHypothesis, name: str) -> Fit | None:
+    """What is left of a hypothesis without one of its effects, under the white noise that is left then: under less, score tests and slopes
+    say how to follow single rows."""
+    hypothesis = fitted.fit.hypothesis
+    others = {n: values for n, values in hypothesis.effects.items() if n != name}
+    return fit(case, with_process_noise(case, hypothesis.with_effects(others)), rounds=0)

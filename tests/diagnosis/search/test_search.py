@@ -18,7 +18,7 @@ from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.beam import Search, certainties
-from diagnosis.search.exchange import exchange, fit_twins
+from diagnosis.search.exchange import exchange, fit_twins, shrink
 from diagnosis.search.fitting import Job, once_more, refined, rough
 from sim.added_effects import library
 from sim.bind import BoundPlant
@@ -72,6 +72,19 @@ def test_an_effect_is_exchanged_for_its_like(sprung_and_late: tuple[Case, Fit]) 
     assert set(best.effects) == {"azimuth.cable_spring", "main_input.delay"}
     assert best.fit.hypothesis.effects["main_input.delay"]["tau"] == pytest.approx(0.05, abs=0.002)
     assert best.evidence > wrong.evidence + 20.0
+
+
+def test_what_showed_beside_a_wrong_effect_does_without_it(sprung_and_late: tuple[Case, Fit]) -> None:
+    # A spring and 50 ms of delay, which the search reached only with an idle offset of a sensor beside them.
+    case, nominal = sprung_and_late
+    idle = {"psi_sensor.offset": {"offset": 1e-4}}
+    three = fitted(case, nominal, {**SPRING, **LATE, **idle})
+    found = {frozenset(three.effects): three}
+    shrink(case, found)
+    best = max(found.values(), key=lambda entry: entry.evidence)
+    assert set(best.effects) == {"azimuth.cable_spring", "main_input.delay"}
+    assert best.fit.hypothesis.effects["main_input.delay"]["tau"] == pytest.approx(0.05, abs=0.002)
+    assert best.fit.hypothesis.effects["azimuth.cable_spring"]["k"] == pytest.approx(0.004, rel=0.1)
 
 
 @pytest.mark.soak
