@@ -1,8 +1,9 @@
 """Friction that is higher near rest than in motion.
 
-(1)  torque - b_s exp(-x^2 / (1 + e x)) sgn(v) with x = |v| / v_s, above the nominal Coulomb level
+(1)  torque - b_s exp(-x^2 (1 + e) / (1 + e x)) sgn(v) with x = |v| / v_s, above the nominal Coulomb level
 
-e = 0 is the bell of the literature, a large e its plain exponential: bearings are found with either.
+It falls to 1/e of b_s at v_s. With e = 0 it is the bell of the literature, with a large one its plain exponential: bearings are found with
+either.
 """
 
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ import sympy
 from sim.edits import axis_of, short, with_friction
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.prior import Prior
+from sim.prior import NOTHING_NEW, Prior, Unlikely
 
 PRIOR = Prior(-0.8, "its shapes are many, and dry friction that does not fall is among them")
 
@@ -33,10 +34,11 @@ def effects(model: Model) -> Iterator[Effect]:
                     2.0 * speed,
                     0.08 * speed,
                     starts=(0.03 * speed, 0.1 * speed, 0.3 * speed),
+                    unlikely=Unlikely(NOTHING_NEW, "it falls beyond usual motion: dry friction", above=0.5 * speed),
                 ),
                 EffectParameter("e", "1", 0.0, 20.0, 0.0, starts=(0.0, 3.0), refining=True),
             ),
-            equation=f"- b_s exp(-x^2/(1 + e x)) sgn({angle}'), x = |{angle}'|/v_s",
+            equation=f"- b_s exp(-x^2 (1 + e)/(1 + e x)) sgn({angle}'), x = |{angle}'|/v_s",
             story="The grease holds a resting bearing more firmly than a turning one: it breaks loose with a jerk.",
             source="Armstrong, Dupont and Canudas de Wit, Automatica 30(7), 1994",
             prior=PRIOR,
@@ -51,4 +53,4 @@ def effects(model: Model) -> Iterator[Effect]:
 
 def _level(model: Model, axis: str, b_s: sympy.Symbol, v_s: sympy.Symbol, e: sympy.Symbol) -> sympy.Expr:
     x = sympy.Abs(axis_of(model, axis).velocity) / v_s
-    return b_s * sympy.exp(-(x**2) / (1 + e * x))
+    return b_s * sympy.exp(-(x**2) * (1 + e) / (1 + e * x))
