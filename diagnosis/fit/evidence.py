@@ -27,21 +27,21 @@ class FittedHypothesis:
 
 
 def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
-    """Log evidence by Laplace's method, with theta normal, sizes SIZE_SD times their reference, shapes known to a factor.
+    """Log evidence by Laplace's method, with theta normal and sizes SIZE_SD times their reference; each shape costs SHAPE_COST, whatever
+    the logs tell of it: one of which they tell nothing makes nothing likelier.
 
     `effects` is the plant's library.
     """
     size = len(found.hypothesis.theta)
-    sign, volume = np.linalg.slogdet(found.information)
     new = [(row, from_zero(entry.parameter)) for row, entry in enumerate(found.free, size) if entry.stated is None]
     prior = sum(-np.log(decisions.SIZE_SD) if is_size else -decisions.SHAPE_COST for _, is_size in new)
-    shapes = [row for row, is_size in new if not is_size]
+    known = np.setdiff1d(np.arange(len(found.information)), [row for row, is_size in new if not is_size])
+    sign, volume = np.linalg.slogdet(found.information[np.ix_(known, known)])
     supposed = [effects[name] for name in found.hypothesis.effects]
     prior -= WAVE_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
     prior -= STEPS_COST * sum(p.rough and p.is_size for effect in supposed for p in effect.parameters)
     prior -= COLOUR_COST * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
-    own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
-    return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
+    return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior
 
 
 def as_fitted(case: Case, found: Fit) -> FittedHypothesis:
