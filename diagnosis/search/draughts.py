@@ -45,15 +45,17 @@ def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tupl
 
 def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
     """Hypotheses with the noise with a memory that the logs tell of beside their names, each with its own, where that is likelier; none
-    where beside the best of them it takes what is no noise.
+    where beside the best of them, and all that come near it, it takes what is no noise.
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
     Where it does so beside the best, evidence under it is not to be compared with evidence without. The best of each number of effects is
     asked, and of the others those that it could bring near that.
     """
-    best = max(fitted, key=lambda entry: entry.evidence, default=None)
-    first = None if best is None else _with_memory(case, best)
+    ranked = sorted(fitted, key=lambda entry: -entry.evidence)
+    near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.NEAR_BEST)
+    noisy = ((entry, with_own) for entry in near if (with_own := _with_memory(case, entry)) is not None)
+    best, first = next(noisy, (None, None))
     if best is None or first is None:
         return []
     sizes = sorted({len(entry.effects) for entry in fitted})
