@@ -131,7 +131,9 @@ def with_twins(case: Case, told: Search, first: FittedHypothesis) -> Search:
     kept = [entry for entry in ends if _certain(entry, found)]
     if not kept:
         return told
-    return replace(told, fitted=tuple(sorted([*told.fitted, *kept], key=lambda entry: -entry.evidence)))
+    better = {frozenset(entry.effects): entry for entry in told.fitted}
+    keep_better(better, kept)
+    return replace(told, fitted=tuple(sorted(better.values(), key=lambda entry: -entry.evidence)))
 
 
 def _rules(

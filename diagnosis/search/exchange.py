@@ -1,16 +1,18 @@
 """Effects of the best hypothesis exchanged for others: what was fitted beside a wrong effect is tried where the rest fits."""
 
-from collections.abc import Set
+from collections.abc import Mapping, Sequence, Set
 
 import numpy as np
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.score_tests import score_effects, shape_starts
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
+from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
 
@@ -31,45 +33,79 @@ def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: S
 
 
 def shrink(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
-    """The best of the largest size once more without each effect in turn, where that was not found yet: what first showed beside a wrong
-    effect may do without it (a floating search: Pudil, Novovicova and Kittler 1994)."""
+    """The best of the largest size once more without each effect in turn, where that was not found nearly as likely: what first showed
+    beside a wrong effect may do without it (a floating search: Pudil, Novovicova and Kittler 1994)."""
     size = max(len(names) for names in found)
-    largest = sorted((e for e in found.values() if len(e.effects) == size > 2), key=lambda entry: -entry.evidence)
+    largest = sorted((e for e in found.values() if len(e.effects) == size > 1), key=lambda entry: -entry.evidence)
     near = [entry for entry in largest if entry.evidence > largest[0].evidence - decisions.NEAR_BEST]
     fewer = {frozenset(entry.effects) - {name}: (entry, name) for entry in reversed(near) for name in entry.effects}
-    wanted = [job for names, job in fewer.items() if names not in found]
-    starts = [start for start in thread_map(lambda job: _without(case, *job), wanted) if start is not None]
+    wanted = [job for names, job in fewer.items() if not _is_near(found.get(names), job[0])]
+    starts = [start for start in thread_map(lambda job: _shrunk(case, *job), wanted) if start is not None]
     begun = [as_fitted(case, start) for start in starts]
     keep_better(found, [*begun, *(entry for entry in thread_map(lambda fit: refined(case, fit), begun) if entry)])
 
 
-def _without(case: Case, fitted: FittedHypothesis, name: str) -> Fit | None:
-    """The hypothesis fitted without one of its effects, from where the others were."""
-    start = _left(case, fitted, name)
-    return None if start is None else fit(case, start.hypothesis, rounds=4)
+def _shrunk(case: Case, fitted: FittedHypothesis, name: str) -> Fit | None:
+    """The hypothesis fitted without one of its effects, from where the others were, under the white noise that is left then."""
+    return fit(case, with_process_noise(case, _without(fitted.fit.hypothesis, name)), rounds=4)
 
 
 def fit_twins(
     case: Case, found: dict[frozenset[str], FittedHypothesis], first: FittedHypothesis
 ) -> list[FittedHypothesis]:
-    """Effects that data hardly tell from one of the `first` hypothesis, where they are not `found` yet, fitted in its place and to the end:
-    these, which are then found too.
+    """Effects that data hardly tell from one of the `first` hypothesis, fitted in its place and to the end, where they were not `found`
+    nearly as likely: these, which are then found too.
 
     Score tests are taken under numbers and noise that are bent to take an effect's part: there only one of a few that are alike may
-    promise much, and which noise is left beside it decides between them.
+    promise much, and which noise is left beside it decides between them. And a search from far away may have led one to another hill.
     """
-    jobs = [
-        job
-        for name in first.effects
-        for job in _instead(case, first, name, twins_of(case, name))
-        if frozenset(first.effects) - {name} | {job.score_test.effect} not in found
-    ]
-    begun = [entry for entry in thread_map(lambda job: at_its_place(case, job), jobs) if entry]
+    starts = [start for name in first.effects for start in _twins_begun(case, found, first, name)]
+    begun = [entry for entry in thread_map(lambda start: at_its_place(case, start), starts) if entry]
     ends = [entry for entry in thread_map(lambda entry: refined(case, entry), begun) if entry]
     fresh: dict[frozenset[str], FittedHypothesis] = {}
     keep_better(fresh, [*begun, *ends])
     found.update(fresh)
     return list(fresh.values())
+
+
+def _twins_begun(
+    case: Case, found: Mapping[frozenset[str], FittedHypothesis], first: FittedHypothesis, name: str
+) -> list[Hypothesis]:
+    """Where the twins of one effect begin, those that are not nearly as likely already: the likeliest of their starts in its place, as a
+    linear problem knows nothing of where a spring rests."""
+    rest = frozenset(first.effects) - {name}
+    wanted = {twin for twin in twins_of(case, name) if not _is_near(found.get(rest | {twin}), first)}
+    promised = {job.score_test.effect: job for job in _instead(case, first, name, wanted)}
+    starts = []
+    for twin in sorted(wanted):
+        begun = [promised[twin].begun] if twin in promised else []
+        begun += _of_its_size(case, first, name, twin, begun)
+        start, there = likeliest(case, begun) if begun else (first.fit.hypothesis, -np.inf)
+        starts += [start] if there > -np.inf else []
+    return starts
+
+
+def _is_near(known: FittedHypothesis | None, first: FittedHypothesis) -> bool:
+    return known is not None and known.evidence > first.evidence - decisions.NEAR_BEST
+
+
+def _of_its_size(
+    case: Case, first: FittedHypothesis, name: str, twin: str, promised: Sequence[Hypothesis]
+) -> list[Hypothesis]:
+    """A twin in the place of an effect with all shapes that it may have, as large as is `promised` or, in the same unit, as the effect."""
+    own, other, hypothesis = case.library.effects[name].size, case.library.effects[twin], first.fit.hypothesis
+    if other.is_event or other.swings:
+        return []  # where it begins the logs say
+    sizes = [begun.effects[twin][other.size.symbol] for begun in promised]
+    if other.size.unit == own.unit and not other.size.rough:
+        away = hypothesis.effects[name][own.symbol] - (own.zero or 0.0)
+        sizes.append(float(np.clip((other.size.zero or 0.0) + away, other.size.lower, other.size.upper)))
+    rest = _without(hypothesis, name)
+    return [
+        rest.with_effects({**rest.effects, twin: {**shapes, other.size.symbol: size}})
+        for size in sizes
+        for shapes in shape_starts(other)
+    ]
 
 
 def twins_of(case: Case, name: str) -> set[str]:
@@ -89,7 +125,7 @@ def _exchanged(
 ) -> FittedHypothesis | None:
     """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
     jobs = [job for jobs in thread_map(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
-    fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job), jobs) if entry]
+    fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job.begun), jobs) if entry]
     keep_better(found, fitted)
     first = max((entry.evidence for entry in fitted), default=-np.inf)
     near = [entry for entry in fitted if entry.evidence > max(first, best.evidence) - decisions.NEAR_BEST]
@@ -101,7 +137,8 @@ def _exchanged(
 
 def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Job]:
     """Effects that promise most in the place of `name`, all else as it was fitted."""
-    start = _left(case, fitted, name)
+    hypothesis = fitted.fit.hypothesis
+    start = fit(case, _without(hypothesis, name), rounds=0) if worth else None
     if start is None:
         return []
     score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
@@ -109,9 +146,5 @@ def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -
     return [Job(start, entry) for entry in score_tests if entry.gain > least][: decisions.NEXT]
 
 
-def _left(case: Case, fitted: FittedHypothesis, name: str) -> Fit | None:
-    """What is left of a hypothesis without one of its effects, under the white noise that is left then: under less, score tests and slopes
-    say how to follow single rows."""
-    hypothesis = fitted.fit.hypothesis
-    others = {n: values for n, values in hypothesis.effects.items() if n != name}
-    return fit(case, with_process_noise(case, hypothesis.with_effects(others)), rounds=0)
+def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
+    return hypothesis.with_effects({n: values for n, values in hypothesis.effects.items() if n != name})

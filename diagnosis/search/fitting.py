@@ -41,11 +41,16 @@ class Job:
     start: Fit
     score_test: ScoreTest
 
+    @property
+    def begun(self) -> Hypothesis:
+        """Where its fit begins."""
+        hypothesis, entry = self.start.hypothesis, self.score_test
+        return hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
+
 
 def rough(case: Case, job: Job) -> FittedHypothesis | None:
     """A first joint fit, under the process noise that was there before."""
-    hypothesis, entry = job.start.hypothesis, job.score_test
-    start = hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
+    entry, start = job.score_test, job.begun
     if _is_rough(case, entry.effect):
         start = _polished(case, start, entry.effect, POLISHING)
     begun = _from_stated(case, start) if is_astray(start, decisions.ASTRAY) else None
@@ -65,10 +70,9 @@ def is_astray(hypothesis: Hypothesis, limit: float) -> bool:
     return bool(hypothesis.theta @ hypothesis.theta > limit * len(hypothesis.theta))
 
 
-def at_its_place(case: Case, job: Job) -> FittedHypothesis | None:
+def at_its_place(case: Case, begun: Hypothesis) -> FittedHypothesis | None:
     """A first fit from where the rest fits already."""
-    hypothesis, entry = job.start.hypothesis, job.score_test
-    found = fit(case, hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values}), rounds=4)
+    found = fit(case, begun, rounds=4)
     return None if found is None or not _whole_counts(case, found) else as_fitted(case, found)
 
 
