@@ -142,3 +142,11 @@ def test_what_a_sensor_s_steps_gain_makes_what_is_beside_them_no_less_sure(first
     both = fitted(40150.0, **{first.replace(".", "__"): EFFECTS[first].absent, "elevation__cable_spring": {"k": 0.003}})
     found = weigh(Tried((both, one), fitted(), effect_library(bound("ce150")), 10.0), law=UNLEARNED)
     assert (found.fitted[0] is both) is second_counts
+
+
+def test_friction_that_falls_beyond_usual_motion_is_rather_dry_friction() -> None:
+    # Axes of this rig turn about 1 rad/s: one that falls at 0.1 rad/s is Stribeck's, one at 0.8 rad/s is none.
+    falls, flat = (fitted(azimuth__stribeck={"b_s": 1e-3, "v_s": v_s, "e": 2.0}) for v_s in (0.1, 0.8))
+    rubs = fitted(azimuth__coulomb={"b": 1e-3})
+    assert prior_odds(rubs) - 2.0 < prior_odds(falls) < prior_odds(rubs)
+    assert prior_odds(flat) < prior_odds(rubs) - 5.0

@@ -96,6 +96,19 @@ def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> No
     assert fit_twins(late, found, sensor) == []  # all were tried
 
 
+def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew() -> None:
+    # Truth: 0.4 mN m of dry friction, the same at all speeds: Stribeck's that falls far beyond all motion is hardly another.
+    case = arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=71))
+    rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
+    slope = supposed(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
+    assert slope.evidence < rub.evidence - 100.0  # a bell narrower than a count a row
+    found = {frozenset(entry.effects): entry for entry in (rub, slope)}
+    fit_twins(case, found, rub)
+    again = found[frozenset(("arm.stribeck",))]
+    assert again.evidence > rub.evidence - 50.0
+    assert again.fit.hypothesis.effects["arm.stribeck"]["b_s"] == pytest.approx(4e-4, rel=0.05)
+
+
 def test_a_beam_holds_what_differs(late: Case) -> None:
     entries = [
         replace(named(*effects), evidence=evidence)
