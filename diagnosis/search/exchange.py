@@ -39,15 +39,19 @@ def shrink(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     largest = sorted((e for e in found.values() if len(e.effects) == size > 1), key=lambda entry: -entry.evidence)
     near = [entry for entry in largest if entry.evidence > largest[0].evidence - decisions.NEAR_BEST]
     fewer = {frozenset(entry.effects) - {name}: (entry, name) for entry in reversed(near) for name in entry.effects}
-    wanted = [job for names, job in fewer.items() if not _is_near(found.get(names), job[0])]
-    starts = [start for start in thread_map(lambda job: _shrunk(case, *job), wanted) if start is not None]
-    begun = [as_fitted(case, start) for start in starts]
+    wanted = {names: job for names, job in fewer.items() if not _is_near(found.get(names), job[0])}
+    starts = thread_map(lambda names: _shrunk(case, *wanted[names], found.get(names)), list(wanted))
+    begun = [as_fitted(case, start) for start in starts if start is not None]
     keep_better(found, [*begun, *(entry for entry in thread_map(lambda fit: refined(case, fit), begun) if entry)])
 
 
-def _shrunk(case: Case, fitted: FittedHypothesis, name: str) -> Fit | None:
-    """The hypothesis fitted without one of its effects, from where the others were, under the white noise that is left then."""
-    return fit(case, with_process_noise(case, _without(fitted.fit.hypothesis, name)), rounds=4)
+def _shrunk(case: Case, fitted: FittedHypothesis, name: str, known: FittedHypothesis | None) -> Fit | None:
+    """The hypothesis fitted without one of its effects, from where the others were, under the white noise that is left then; None where it
+    begins by far less likely than what is `known` of it."""
+    start = fit(case, with_process_noise(case, _without(fitted.fit.hypothesis, name)), rounds=0)
+    if start is None or (known and start.log_likelihood < known.fit.log_likelihood - decisions.NEAR_BEST):
+        return None
+    return fit(case, start.hypothesis, rounds=4)
 
 
 def fit_twins(
