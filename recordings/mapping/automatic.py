@@ -3,7 +3,7 @@
 import shlex
 from collections.abc import Mapping
 
-from recordings.mapping.names import Ambiguous, find
+from recordings.mapping.names import Ambiguous, find, without_device
 from recordings.mapping.source import Source
 from recordings.signals import Signal
 from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
@@ -47,7 +47,7 @@ def _described(name: str, of: Source) -> str:
 
 def _base_in(name: str, signal: Signal, si: str) -> str | None:
     """The name of a signal without its unit, where that is one of `si`."""
-    last = name.split(".")[-1]
+    last = without_device(name).split(".")[-1]
     suffix = suffix_of(last)
     unit = known(signal.unit) if signal.unit else (unit_of_suffix(suffix) if suffix else None)
     if unit is None or unit.si != si or signal.values.ndim != 1:

@@ -40,14 +40,14 @@ def _candidates(name: str, signals: Mapping[str, Signal]) -> list[str]:
         return headed
     plain = name.replace("(1)", "")  # of a structure that is the only one of its kind
     endings = tuple(f"{mark}{plain}" for mark in "./")
-    for bare in (_without_device, _without_instances):
+    for bare in (without_device, _without_instances):
         alike = [known for known in signals if bare(known) == plain or bare(known).endswith(endings)]
         if alike:
             return alike
     return []
 
 
-def _without_device(name: str) -> str:
+def without_device(name: str) -> str:
     """The name without what a calibration tool writes behind it: `psi_rad` of `psi_rad\\XCP:1`."""
     return re.sub(r"\\.*$", "", name)
 

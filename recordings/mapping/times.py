@@ -44,7 +44,7 @@ def times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array,
     ranges: list[float] = []
     quantity = evaluated(TIME, text, node, partial(_look_up, clock=clock, length=length, of=of, ranges=ranges), of)
     factor, told = _calendar(quantity) or factor_of(TIME, text, quantity, of)
-    told += "".join(f", whose ticks begin again behind {size:.0f}: counted on" for size in ranges[:1])
+    told += "".join(f", whose ticks ran over in {np.log2(size):.0f} bits: counted on" for size in ranges[:1])
     t_s: Array = quantity.values * factor
     if t_s.size != length:
         got = f"{length} values at {t_s.size} times"

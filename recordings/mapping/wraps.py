@@ -18,9 +18,11 @@ def clock_past_its_end(ticks: Array) -> tuple[Array, float | None]:
         return ticks, None
     steps = np.diff(ticks)
     falls, usual = steps < 0.0, float(np.median(steps))
-    for size in INTEGERS if falls.any() and ticks.min() >= 0.0 else ():
+    for size in INTEGERS if falls.any() else ():
+        least = -0.5 * size if ticks.min() < 0.0 else 0.0  # of a signed integer
         over = steps[falls] + size
-        if ticks.max() < size and np.all((over > 0.0) & (over <= NEXT_STEPS * usual)):
+        within = ticks.min() >= least and ticks.max() < least + size
+        if within and np.all((over > 0.0) & (over <= NEXT_STEPS * usual)):
             return np.concatenate([ticks[:1], ticks[0] + np.cumsum(np.where(falls, steps + size, steps))]), size
     return ticks, None
 

@@ -1,11 +1,18 @@
-"""The bytes of a text file as text: UTF-8, UTF-16, or the letters of Windows, and what is to be said of that."""
+"""The bytes of a text file as text: UTF-8, UTF-16, UTF-32, or the letters of Windows, and what is to be said of that."""
 
 import codecs
 from pathlib import Path
 
 from records.errors import BadInput
 
-MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+# The longer first: UTF-32's mark begins as UTF-16's.
+MARKS = (
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
 BINARY = {
     b"PK\x03\x04": "a zipped file, such as an Excel workbook",
     b"\xd0\xcf\x11\xe0": "an old Excel workbook",
@@ -21,7 +28,7 @@ BINARY = {
 
 
 def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
-    """The text of a file in UTF-8, UTF-16 or, where it is neither, Windows-1252, and what is to be said of that; raises BadInput."""
+    """The text of a file in UTF-8, -16, -32 or, where it is none of these, Windows-1252, and what is said of that; raises BadInput."""
     try:
         content = path.read_bytes()
     except OSError as error:
@@ -52,4 +59,4 @@ def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
 
 def _plain(text: str) -> str:
     """The text with a typesetter's minus and blanks as numbers are written."""
-    return text.replace("\u2212", "-").replace("\u00a0", " ").replace("\u202f", " ")
+    return text.replace("\u2212", "-").replace("\u00a0", " ").replace("\u202f", " ").replace("\u2009", " ")

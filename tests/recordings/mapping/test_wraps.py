@@ -15,6 +15,14 @@ def test_ticks_of_a_narrow_integer_count_on(size: float) -> None:
     np.testing.assert_array_equal(counted - counted[0], TICKS)
 
 
+@pytest.mark.parametrize("size", [2.0**16, 2.0**32])
+def test_ticks_of_a_signed_integer_count_on(size: float) -> None:
+    """Truth: from 3000 ticks before the integer's end, behind which it is least."""
+    counted, found = clock_past_its_end((TICKS + size - 3000.0) % size - 0.5 * size)
+    assert found == size
+    np.testing.assert_array_equal(counted - counted[0], TICKS)
+
+
 @pytest.mark.parametrize(
     "ticks",
     [
