@@ -9,7 +9,7 @@ import numpy as np
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.formats import table
-from recordings.joined import from_the_inputs, in_order, on_one_clock
+from recordings.joined import from_the_inputs, in_order, in_own_rows, on_one_clock
 from recordings.mapping.automatic import ambiguous, automatic
 from recordings.mapping.columns import Column, column
 from recordings.mapping.mapping import ColumnMapping
@@ -59,7 +59,8 @@ def log_of_contents(
     facts = _facts(contents, where, columns)
     of = source(contents, where, mapping.group, mapping.per_turn, mapping.columns.get(TIME))
     found, left_out = _columns(of, mapping, columns)
-    channels, counted = on_one_clock({name: entry.channel for name, entry in found.items()})
+    channels, held = in_own_rows({name: entry.channel for name, entry in found.items()}, columns)
+    channels, counted = on_one_clock(channels)
     channels, shift = _from_the_first(channels)
     channels, late = in_order(channels, columns, span or Span())
     part, before = from_the_inputs(channels, columns, span or Span())
@@ -74,7 +75,7 @@ def log_of_contents(
     )
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
-    told += [*counted, *late, *before]
+    told += [*held, *counted, *late, *before]
     return Imported(log, used, (*told, *_missing(log), *_doubtful(log, of)))
 
 

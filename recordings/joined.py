@@ -10,6 +10,46 @@ from recordings.signals import counted
 from records.log import LogColumns
 from records.logs.restarts import pause_s, restart_rows
 
+SPARSE = 1 / 3  # of a column without a number: of two rates the nearest that loggers write into one table are 3 to 2
+EVENLY = 10  # times the usual rows to the next number: beyond it a signal was not logged for a while, and nobody knows what it was
+
+
+def in_own_rows(channels: Mapping[str, Channel], columns: LogColumns) -> tuple[dict[str, Channel], list[str]]:
+    """The inputs and what is beside them without the rows in which another signal alone was written, and what is to be said of it.
+
+    So are the outputs where every input is: else a row without an output still tells when an input changed.
+    """
+    held = [name for name in channels if name not in columns.outputs and _is_sparse(channels[name])]
+    inputs_too = all(name in held for name in columns.inputs if channels[name].t_s is not None)
+    outputs = [name for name in columns.outputs if _is_sparse(channels[name])] if held and inputs_too else []
+    thinned = {name: _known(channels[name]) for name in (*held, *outputs)}
+    told = [
+        f"{name} has a number in {_size(thinned[name])} of {_size(channels[name])} rows, and holds it until the next"
+        for name in held
+    ]
+    return {**channels, **thinned}, told
+
+
+def _is_sparse(channel: Channel) -> bool:
+    """Whether a clocked channel has numbers, evenly in so few rows that the others are rows of other signals."""
+    numbers = np.flatnonzero(~np.isnan(channel.values)) if channel.t_s is not None else np.zeros(0, np.int64)
+    if not numbers.size:
+        return False
+    steps = np.diff(numbers, append=channel.values.size)
+    lacking = 1.0 - numbers.size / (channel.values.size - numbers[0])
+    return bool(lacking >= SPARSE and steps.max() <= EVENLY * np.median(steps))
+
+
+def _known(channel: Channel) -> Channel:
+    """The samples of a clocked channel that are numbers or faults."""
+    chosen = ~np.isnan(channel.values)
+    chosen[list(channel.faults)] = True
+    return taken(channel, chosen)
+
+
+def _size(channel: Channel) -> int:
+    return int(channel.values.size)
+
 
 def on_one_clock(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], list[str]]:
     """The channels with times that count on where they begin again, and what is to be said of it.

@@ -70,3 +70,32 @@ def test_times_that_are_text_are_shown_as_they_stand(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("\n".join(["t_ms,k,u_M_V,u_T_V,psi_rad,phi_rad", *rows]))
     with pytest.raises(BadInput, match=r"t_ms \(text, as line 2: \"'1000\""):
         imported_here(tmp_path / "run.csv", ColumnMapping())
+
+
+def test_signals_that_are_written_each_in_rows_of_its_own_are_the_run(tmp_path: Path) -> None:
+    """Truth: u_M, u_T, psi and phi in turn, 1 ms apart, one a row; the last column is empty in the first 500 rows of the file."""
+    t_s = 0.01 * np.arange(300)
+    u_V, psi = 5.0 + np.sin(9.0 * t_s), 0.1 * t_s**2
+    turns = [(0.0, "{},,,,"), (0.001, ",1.5,,,"), (0.002, ",,{},,"), (0.003, ",,,0.25,")]
+    numbers = (u_V, u_V, psi, psi)
+    rows = [
+        f"{t + late:.3f}," + form.format(f"{of[k]:.9f}")
+        for k, t in enumerate(t_s)
+        for (late, form), of in zip(turns, numbers, strict=True)
+    ]
+    rows[900] += "7"
+    (tmp_path / "run.csv").write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad,psi_ref_rad\n" + "\n".join(rows))
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.t_s[::2], t_s + 0.002, atol=1e-9)
+    np.testing.assert_allclose(done.log.column("psi_rad")[::2], psi, atol=1e-9)
+    np.testing.assert_allclose(done.log.column("u_M_V")[::2], u_V, atol=1e-9)
+    np.testing.assert_allclose(done.log.column("phi_rad")[1::2], 0.25)
+    assert "u_M_V has a number in 300 of 1200 rows, and holds it until the next" in done.found
+    assert "psi_ref_rad" in done.log.extra
+
+
+def test_an_input_that_was_not_logged_for_a_while_is_not_held(tmp_path: Path) -> None:
+    rows = [f"{0.01 * k:.2f},{'' if 100 <= k < 200 else 5},1,{0.001 * k},0" for k in range(260)]
+    (tmp_path / "run.csv").write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(rows))
+    with pytest.raises(BadInput, match=r"no number at 1 s, in 100 of 260 rows"):
+        imported_here(tmp_path / "run.csv", ColumnMapping())
