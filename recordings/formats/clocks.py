@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,7 +19,54 @@ def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
     named = [name for name, signal in signals.items() if signal.values.ndim == 1 and is_time_name(name)]
     dated = [name for name, signal in signals.items() if signal.instants]
     clocks = named or dated or [name for name, signal in signals.items() if _rises_in_time(signal)]
-    return {name: replace(signal, clock=_clock_of(name, signal, signals, clocks)) for name, signal in signals.items()}
+    return {
+        name: replace(signal, clock=signal.clock or _clock_of(name, signal, signals, clocks))
+        for name, signal in signals.items()
+    }
+
+
+def with_clocks_in_front(signals: Mapping[str, Signal]) -> dict[str, Signal]:
+    """The columns of a table with the clocks in front of them, where a column of times stands in front of each or of each few.
+
+    Such columns have one heading, as `X_Value` again and again or, but for numbers, `time1`, `time2`, and each rises. Rows below the last
+    of a clock's times are no samples. As they are where the table has one clock for all.
+    """
+    clocks = _in_front(signals)
+    if not clocks:
+        return dict(signals)
+    found: dict[str, Signal] = {}
+    clock = clocks[0]
+    for name, signal in signals.items():
+        clock = name if name in clocks else clock
+        whole = _ended(signal, signals[clock])
+        found[name] = whole if name == clock else replace(whole, clock=clock)
+    return found
+
+
+def _in_front(signals: Mapping[str, Signal]) -> list[str]:
+    """The rising columns of the first one's heading, or of its name of times with other numbers, another signal behind each of them."""
+    headings = [
+        re.sub(r"^c\d+\.", "", name) for name in signals
+    ]  # a heading that stands again has its column before it
+    first = headings[0] if headings else ""
+    stem = _without_numbers(first)
+    same = _without_numbers if is_time_name(stem) else str
+    alike = [name for name, heading in zip(signals, headings, strict=True) if same(heading) == same(first)]
+    behind = dict(pairwise([*signals, ""]))
+    rise = all(bool(np.all(np.diff(_ended(signals[name], signals[name]).values) > 0.0)) for name in alike)
+    apart = not any(behind[name] in ("", *alike) for name in alike)
+    return alike if len(alike) > 1 and rise and apart else []
+
+
+def _without_numbers(heading: str) -> str:
+    return re.sub(r"[ _]?\d+", "", heading)
+
+
+def _ended(signal: Signal, clock: Signal) -> Signal:
+    """The signal without the rows below the last of its clock's times."""
+    end = int(np.max(np.flatnonzero(np.isfinite(clock.values)), initial=-1)) + 1
+    faults = {row: told for row, told in signal.faults.items() if row < end}
+    return replace(signal, values=signal.values[:end], faults=faults)
 
 
 def _rises_in_time(signal: Signal) -> bool:

@@ -12,7 +12,10 @@ Array = NDArray[np.float64]
 
 DECIMALS = (".", ",")
 # What spreadsheets, MATLAB, R, pandas and loggers write where there is no value.
-_WORDS = "nan na n/a #n/a #n/d null none nil - -- --- ? * invalid -nan nan(ind) -nan(ind) 1.#qnan #value! #div/0!"
+_WORDS = (
+    "nan na n/a #n/a #n/d null none nil - -- --- ? * invalid missing -nan nan(ind) -nan(ind) nan(snan) -nan(snan) "
+    "1.#qnan -1.#qnan 1.#snan -1.#snan 1.#ind -1.#ind #value! #div/0! #num!"
+)
 MISSING = frozenset(("", *_WORDS.split()))
 _NUMBER = {
     ".": re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?"),

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from recordings.formats.clocks import with_clocks
+from recordings.formats.clocks import with_clocks, with_clocks_in_front
 from recordings.formats.text.cells import (
     from_the_first_s,
     is_missing,
@@ -28,6 +28,7 @@ from records.errors import BadInput
 
 Array = NDArray[np.float64]
 
+OVERLOAD = 9.9e37  # beyond the range or no number, as instruments write it: SCPI-99, volume 1, 7.2.1.4 and 7.2.1.5
 ACROSS = 10  # times as many columns as rows: signals that lie in rows
 MOST_TEXT = (
     0.5  # of a column's filled cells that are no numbers: beyond it the column is a text, not a signal with faults
@@ -49,7 +50,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
     told = (*found, *layout.found, *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
     singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
-    return Contents(with_clocks(signals), _sidecar(path), told, unread, singles=singles)
+    return Contents(with_clocks(with_clocks_in_front(signals)), _sidecar(path), told, unread, singles=singles)
 
 
 def _check_upright(body: Sequence[Line], layout: Layout, where: str) -> None:
@@ -135,7 +136,8 @@ def _signals(lines: Sequence[Line], layout: Layout) -> tuple[dict[str, Signal], 
     unread: dict[str, str] = {}
     for name, heading, unit, found in zip(_names(layout.headings), layout.headings, units, columns, strict=True):
         if isinstance(found, Signal):
-            signals[name] = replace(found, unit=found.unit or unit, heading=heading)
+            values = np.where(np.abs(found.values) >= OVERLOAD, np.nan, found.values)
+            signals[name] = replace(found, values=values, unit=found.unit or unit, heading=heading)
         else:
             unread[name] = found
     return signals, unread

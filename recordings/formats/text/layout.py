@@ -17,6 +17,9 @@ SAMPLE_LINES = 400  # by which the layout is told: enough to pass a preamble, fe
 FOLLOWING = 3  # rows of numbers in a row, where the table is: a preamble has one or two
 HEADING_LINES = 8  # before the numbers, among which the header is: below it stand units and remarks, not more
 COMMENTS = ("#", "%", "//")
+_KIND = re.compile(
+    r"[fiu]\d{1,2}|float(32|64)?|double|real|lreal|u?s?d?int\d*|bool(ean)?"
+)  # as INCA, NumPy and PLCs write it
 
 
 @dataclass(frozen=True)
@@ -77,16 +80,24 @@ def find_layout(lines: Sequence[Line], comments: Sequence[Line], asked: TextLayo
     counts = [sum(is_number(cell, decimal) for cell in row) for row in rows]
     least = max(1.0, 0.5 * median(count for count in counts if count))
     numbers = [row for row, count in zip(rows, counts, strict=True) if count >= least]
-    width = mode(len(_trimmed(row)) for row in numbers)
+    filled = mode(len(_trimmed(row)) for row in numbers)
     widest = mode(map(len, numbers))
-    fits = [len(row) >= width and not any(row[widest:]) for row in rows]
-    first = _first([count >= least and fit for count, fit in zip(counts, fits, strict=True)])
+    fits = [len(row) >= filled and not any(row[widest:]) for row in rows]
+    usual = median(map(_texts, numbers, [decimal] * len(numbers)))
+    labelled = [_texts(row, decimal) > max(usual, count - 1) for row, count in zip(rows, counts, strict=True)]
+    first = _first([c >= least and fit and not label for c, fit, label in zip(counts, fits, labelled, strict=True)])
+    width = max([filled, *(cells for line in lines[first:] if (cells := _filled(line.text, separator)) <= widest)])
     before = [*(line for line in comments if line.number < sample[first].number), *sample[:first]]
     before = sorted(before, key=lambda line: line.number)
     above = _headings(before, (separator, decimal), width, widest, _are_counted(numbers))
     comma = " with decimal commas" if decimal == "," else ""
     found = (f"cells separated by {separator}{comma}", *above.told)
     return Layout(separator, decimal, above.headings, above.units, first, found, above.singles)
+
+
+def _texts(row: Sequence[str], decimal: str) -> int:
+    """How many cells of a row hold a text: as many as numbers are labels of these, as a head has them."""
+    return sum(not is_missing(cell) and not is_number(cell, decimal) for cell in row)
 
 
 def _first(are_numbers: Sequence[bool]) -> int:
@@ -124,6 +135,12 @@ def _name(separator: str) -> str:
     return name
 
 
+def _filled(text: str, separator: str) -> int:
+    """How many cells of a line there are up to its last filled one: a signal of few samples has none in most rows."""
+    sign = SEPARATORS[separator]
+    return len(text.split()) if sign is None else text.rstrip(f"{sign} \t").count(sign) + 1
+
+
 def _trimmed(row: list[str]) -> list[str]:
     """A row without the empty cells behind its last separator."""
     while len(row) > 1 and not row[-1]:
@@ -139,28 +156,30 @@ def _headings(before: Sequence[Line], way: tuple[str, str], width: int, widest: 
     separator, decimal = way
     near = before[-HEADING_LINES:]
     candidates = [(line, _cells_of_heading(line.text, separator, width, widest, counted)) for line in near]
-    wide = [(line, cells) for line, cells in candidates if cells is not None]
+    wide = [(line, cells) for line, cells in candidates if cells is not None and not _names_nothing(cells)]
     if not wide:
         names = tuple(f"c{index}" for index in range(1, width + 1))
         unnamed = (f"no header: the columns are c1 to c{width}", *_passed_over(before, separator, width))
         return _Above(names, ("",) * width, unnamed)
     line, cells = wide[-1]
-    units, singles = [""] * width, dict[str, float]()
+    units, singles, of_units = [""] * width, dict[str, float](), None
     if len(wide) > 1 and _are_units(cells):
-        units = [cell.strip("[](){}") for cell in cells]
-        below = line
+        units, of_units = _stripped(cells), line
         line, cells = wide[-2]
-        singles = _above_nothing(line, below, way, width)
+        singles = _above_nothing(line, of_units, way, width)
+    elif len(wide) > 1 and _are_units(wide[-2][1]):
+        units, of_units = _stripped(wide[-2][1]), wide[-2][0]
     names = tuple(cell or f"c{index}" for index, cell in enumerate(cells, start=1))
     told = [f"header in line {line.number}: {shown(line.text)}"]
-    if any(units):
-        told.append(f"units in line {wide[-1][0].number}: {shown(wide[-1][0].text)}")
-    if line.number > 1 and before[0].number < line.number:
-        told.append(f"lines before {line.number} are passed over")
+    if of_units:
+        told.append(f"units in line {of_units.number}: {shown(of_units.text)}")
+    top = min(one.number for one in (line, of_units) if one)
+    if before[0].number < top:
+        told.append(f"lines before {top} are passed over")
     told += [
         f"line {left.number} is passed over: {left.text[:60]!r}, {len(_trimmed(split(left.text, separator)))} cells of {width}"
         for left in before
-        if left.number > wide[-1][0].number and not left.text.lstrip().startswith(COMMENTS)
+        if left.number > line.number and left is not of_units and not left.text.lstrip().startswith(COMMENTS)
     ]
     stated, numbers = units_and_numbers([split(one.text, separator) for one in before], names, decimal)
     if stated:
@@ -219,6 +238,19 @@ def _wider_than_rows(text: str, separator: str, width: int) -> list[str] | None:
 
 def _is_no_name(cell: str) -> bool:
     return is_missing(cell) or any(is_number(cell, decimal) for decimal in DECIMALS)
+
+
+def _names_nothing(cells: Sequence[str]) -> bool:
+    """Whether a line is no heading: it says what kind of number each column holds, is a rule, or has a number twice."""
+    filled = [cell.lower() for cell in cells if cell]
+    numbers = [cell for cell in filled if any(is_number(cell, decimal) for decimal in DECIMALS)]
+    alike = len(filled) > 1 and (len(set(filled)) == 1 or all(map(_KIND.fullmatch, filled)))
+    return alike or len(set(numbers)) < len(numbers)
+
+
+def _stripped(cells: Sequence[str]) -> list[str]:
+    """Units without the brackets around them."""
+    return [cell.strip("[](){}") for cell in cells]
 
 
 def _are_units(cells: Sequence[str]) -> bool:

@@ -34,6 +34,8 @@ LAYOUTS = {
     "mark, line ends of Windows": (b"\xef\xbb\xbf" + _rows(",", [NAMES, *TEXTS], "\r\n").encode(), "utf-8 by its mark"),
     "line ends of an old Mac": (_rows(",", [NAMES, *TEXTS], "\r").encode(), "comma"),
     "UTF-16": (_rows("\t", [NAMES, *TEXTS]).encode("utf-16"), "utf-16 by its mark"),
+    "UTF-32": (_rows("\t", [NAMES, *TEXTS]).encode("utf-32"), "utf-32 by its mark"),
+    "bars around": (("|" + "|\n|".join("|".join(row) for row in [NAMES, ("--", "--", "--"), *TEXTS]) + "|\n").encode(), "bar"),
     "UTF-16 without a mark": (_rows("\t", [NAMES, *TEXTS]).encode("utf-16-le"), "tab"),
     "sep=": (b"sep=;\n" + _rows(";", [NAMES, *_comma(TEXTS)]).encode(), "semicolon"),
     "quotes": (_rows(",", [[f'"{cell}"' for cell in row] for row in [NAMES, *_comma(TEXTS)]]).encode(), "comma"),

@@ -146,3 +146,50 @@ def test_times_of_too_few_digits_are_refused_with_the_step_that_their_ends_give(
 def test_a_clock_may_have_underlines_around_its_name(tmp_path: Path) -> None:
     found = _read("__time,/rig/u_V\n" + _table(",", TIMES_S, U_V), tmp_path / "log.csv")
     assert found.signals["/rig/u_V"].clock == "__time"
+
+
+OWN_TIMES = np.column_stack([TIMES_S, U_V, TIMES_S + 0.001, Y_MV])
+SLOW = _table(",", *OWN_TIMES.T).splitlines(keepends=True)
+SLOW[ROWS // 2 :] = [f"{row[0]:.6f},{row[1]:.6f},,\n" for row in OWN_TIMES[ROWS // 2 :]]
+
+
+@pytest.mark.parametrize(
+    "heads", ["X_Value,u_V,X_Value,y_mV", "time1 [s],u_V,time2 [s],y_mV", "Name,u_V,Name,y_mV\nDelta,4,Delta,4"]
+)
+def test_columns_with_a_clock_in_front_of_each_have_their_own_times(heads: str, tmp_path: Path) -> None:
+    """Truth: y stands 1 ms behind u, and has half as many samples."""
+    (tmp_path / "log.csv").write_text(f"{heads}\n{''.join(SLOW)}")
+    found = read(tmp_path / "log.csv", FOUND).signals
+    y = found["y_mV"]
+    np.testing.assert_allclose(y.values, Y_MV[: ROWS // 2], rtol=1e-6)
+    np.testing.assert_allclose(found[y.clock or ""].values, TIMES_S[: ROWS // 2] + 0.001, atol=1e-9)
+    log = imported_here(tmp_path / "log.csv", _mapping(tmp_path)).log
+    np.testing.assert_allclose(log.column("u_V"), U_V[: ROWS // 2], rtol=1e-6)
+
+
+@pytest.mark.parametrize("heads", ["t1,t2,u_V,y_mV", "t1,u_V,y_mV,t2", "q1,u_V,q2,y_mV"])
+def test_columns_that_are_no_clocks_in_front_of_others_are_none(heads: str, tmp_path: Path) -> None:
+    found = _read(f"{heads}\n" + _table(",", TIMES_S, 1e3 * TIMES_S, U_V, U_V), tmp_path / "log.csv")
+    assert {signal.clock for signal in found.signals.values()} == {None}
+
+
+HEADS = {
+    "INCA": "ETASAsciiItemFile\trecord\ntime\tu\\ETKC:1\ty\\ETKC:1\nf8\tf4\tu2\ns\tV\tmV\n",
+    "units above": "[s]\t[V]\t[mV]\ntime\tu\ty\n",
+    "a rule": "time [s]\tu [V]\ty [mV]\n---\t---\t---\n",
+}
+
+
+@pytest.mark.parametrize("name", HEADS)
+def test_the_heading_is_the_line_of_names_among_types_rules_and_units(name: str, tmp_path: Path) -> None:
+    (tmp_path / "log.txt").write_text(HEADS[name] + _table("\t", TIMES_S, U_V, Y_MV))
+    log = imported_here(tmp_path / "log.txt", _mapping(tmp_path)).log
+    np.testing.assert_allclose(log.y[:, 0], 1e-3 * Y_MV, rtol=1e-6)
+    np.testing.assert_allclose(log.t_s, TIMES_S, atol=1e-9)
+
+
+def test_what_an_instrument_writes_beyond_its_range_is_no_number(tmp_path: Path) -> None:
+    y = Y_MV.copy()
+    y[3], y[5] = 9.9e37, 9.91e37
+    values = _read("t_s,u_V,y_mV\n" + _table(",", TIMES_S, U_V, y), tmp_path / "log.csv").signals["y_mV"].values
+    assert np.flatnonzero(np.isnan(values)).tolist() == [3, 5]
