@@ -21,6 +21,14 @@ _NUMBER = {
     ".": re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?"),
     ",": re.compile(r"[+-]?(\d+(,\d+)?|,\d+)([eEdD][+-]?\d+)?"),
 }
+# Digits in groups of three, as spreadsheets write thousands: 1.234,56 in one country and 1,234.56, 1'234.56 or 1 234.56 in others.
+_GROUPS = {
+    decimal: re.compile(
+        rf"[+-]?[1-9]\d{{0,2}}(?P<sign>[{signs}'’ ])\d{{3}}(?P<more>(?P=sign)\d{{3}})*(?P<part>{point}\d+)?"
+    )
+    for decimal, signs, point in ((".", ",", r"\."), (",", ".", ","))
+}
+_HEXADECIMAL = re.compile(r"0[xX][0-9a-fA-F]+")
 _INFINITE = re.compile(r"[+-]?(inf|infinity|1\.#inf|∞)", re.IGNORECASE)
 _CLOCK = re.compile(
     r"(?:[\w.,/ -]*[\w.][ T_-])?\s*(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,:]\d+)?))?\s*([AaPp][Mm])?"
@@ -43,6 +51,10 @@ def number(cell: str, decimal: str) -> float | None:
         return float(cell.replace(",", ".").replace("d", "e").replace("D", "e"))
     if is_missing(cell):
         return float("nan")
+    if is_grouped(cell, decimal):
+        return number(without_groups(cell, decimal), decimal)
+    if _HEXADECIMAL.fullmatch(cell):
+        return float(int(cell, 16))
     if _INFINITE.fullmatch(cell):
         return float("-inf") if cell.startswith("-") else float("inf")
     return None
@@ -50,8 +62,20 @@ def number(cell: str, decimal: str) -> float | None:
 
 def is_number(cell: str, decimal: str) -> bool:
     """Whether a cell is a number, by itself or with its unit, or a time of day."""
-    plain = _NUMBER[decimal].fullmatch(cell) is not None
-    return plain or time_of_day_s(cell) is not None or number_and_unit(cell, decimal) is not None
+    plain = _NUMBER[decimal].fullmatch(cell) or _HEXADECIMAL.fullmatch(cell) or is_grouped(cell, decimal)
+    return bool(plain) or time_of_day_s(cell) is not None or number_and_unit(cell, decimal) is not None
+
+
+def is_grouped(cell: str, decimal: str) -> bool:
+    """Whether a cell can be nothing but a number with its thousands apart; `1,234` may be one with a decimal comma as well."""
+    match = _GROUPS[decimal].fullmatch(cell)
+    return match is not None and (match["sign"] not in DECIMALS or bool(match["more"]) or bool(match["part"]))
+
+
+def without_groups(cell: str, decimal: str) -> str:
+    """A number without the signs between its thousands; any other text as it is."""
+    match = _GROUPS[decimal].fullmatch(cell)
+    return cell.replace(match["sign"], "") if match else cell
 
 
 def number_and_unit(cell: str, decimal: str) -> tuple[str, str] | None:

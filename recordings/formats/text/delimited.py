@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 from recordings.formats.clocks import with_clocks, with_clocks_in_front
 from recordings.formats.text.cells import (
     from_the_first_s,
+    is_grouped,
     is_missing,
     is_number,
     number,
     number_and_unit,
     time_of_day_s,
+    without_groups,
 )
 from recordings.formats.text.decoding import decoded
 from recordings.formats.text.headings import name_and_unit
@@ -41,6 +43,10 @@ def read(path: Path, asked: TextLayout) -> Contents:
     Raises BadInput for a file that is missing, no text, or holds no row of numbers.
     """
     text, found = decoded(path)
+    if re.match(r"\s*\[?\s*\{\s*\"", text):
+        raise BadInput(
+            "text file", str(path), "JSON", "a table of text", "call it .json, or .jsonl with an object a line"
+        )
     lines, comments, said = _lines(text, asked.skip)
     if said and asked.separator is None:
         asked = replace(asked, separator=said)
@@ -146,7 +152,7 @@ def _signals(lines: Sequence[Line], layout: Layout) -> tuple[dict[str, Signal], 
 def _one_by_one(lines: Sequence[Line], layout: Layout) -> list[Signal | str]:
     """Each column cell by cell; a row of another width is a fault of all columns that it lacks, or of all where it is wider."""
     width = len(layout.headings)
-    rows = [split(line.text, layout.separator) for line in lines]
+    rows = _ungrouped([split(line.text, layout.separator) for line in lines], layout.decimal)
     filled = [(line, row) for line, row in zip(lines, rows, strict=True) if not all(map(is_missing, row))]
     short = [f"line {line.number}: {len(row)} cells of {width}, {layout.found[0]}" for line, row in filled]
     whole = [[] if any(row[width:]) else row for _, row in filled]
@@ -156,6 +162,13 @@ def _one_by_one(lines: Sequence[Line], layout: Layout) -> list[Signal | str]:
         )
         for place in range(width)
     ]
+
+
+def _ungrouped(rows: list[list[str]], decimal: str) -> list[list[str]]:
+    """The rows, where any number has its thousands apart, without the signs between them: `1.234` beside `4.946,04` is 1234."""
+    if not any(is_grouped(cell, decimal) for row in rows for cell in row):
+        return rows
+    return [[without_groups(cell, decimal) for cell in row] for row in rows]
 
 
 def _names(headings: Sequence[str]) -> list[str]:

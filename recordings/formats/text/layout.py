@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import median, mode
 
-from recordings.formats.text.cells import DECIMALS, is_missing, is_number, number
+from recordings.formats.text.cells import DECIMALS, is_grouped, is_missing, is_number, number
 from recordings.formats.text.labview import units_and_numbers
 from recordings.layout import TextLayout
 from recordings.units import known
@@ -91,7 +91,9 @@ def find_layout(lines: Sequence[Line], comments: Sequence[Line], asked: TextLayo
     before = sorted(before, key=lambda line: line.number)
     above = _headings(before, (separator, decimal), width, widest, _are_counted(numbers))
     comma = " with decimal commas" if decimal == "," else ""
-    found = (f"cells separated by {separator}{comma}", *above.told)
+    grouped = next((cell for row in numbers for cell in row if is_grouped(cell, decimal)), None)
+    apart = f" and thousands apart, as {grouped}" if grouped else ""
+    found = (f"cells separated by {separator}{comma}{apart}", *above.told)
     return Layout(separator, decimal, above.headings, above.units, first, found, above.singles)
 
 

@@ -93,6 +93,37 @@ def test_a_heading_is_a_name_and_a_unit(heading: str, name: str, unit: str, tmp_
     assert (signal.unit, signal.heading) == (unit, heading)
 
 
+THOUSANDS = {
+    "Germany": ("1.234,5;-2.000.000;3.456;999,25", 3456.0),
+    "Switzerland": ("1'234.5;-2'000'000;3'456;999.25", 3456.0),
+    "France": ("1\u202f234,5;-2\u202f000\u202f000;3\u202f456;999,25", 3456.0),
+    "America": ("1,234.5;-2,000,000;3,456;999.25", 3456.0),
+    "no thousands": ("1234.5;-2000000;3.456;999.25", 3.456),
+}
+
+
+@pytest.mark.parametrize("country", THOUSANDS)
+def test_thousands_that_stand_apart_are_one_number(country: str, tmp_path: Path) -> None:
+    """Truth: 1234.5, -2000000, 3456 and 999.25; 3.456 means a thousand times more only where other cells show it."""
+    row, third = THOUSANDS[country]
+    (tmp_path / "log.csv").write_text("a;b;c;d\n" + 9 * f"{row}\n")
+    found = read(tmp_path / "log.csv", TextLayout())
+    assert [found.signals[name].values[0] for name in "abcd"] == [1234.5, -2e6, third, 999.25]
+    assert ("thousands apart" in found.found[0]) == (third > 1000.0)
+
+
+def test_quoted_cells_may_have_commas_between_thousands(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text("a,b\n" + 9 * '"1,234.5","12.25"\n')
+    assert read(tmp_path / "log.csv", TextLayout()).signals["a"].values[0] == 1234.5
+
+
+def test_hexadecimal_counts_are_numbers(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text("t_s,counts\n" + "".join(f"0.{k},{hex(4090 + k)}\n" for k in range(9)))
+    np.testing.assert_array_equal(
+        read(tmp_path / "log.csv", TextLayout()).signals["counts"].values, 4090.0 + np.arange(9)
+    )
+
+
 def test_times_of_day_are_seconds_since_the_first_past_midnight_too(tmp_path: Path) -> None:
     stamps = [
         "2024-05-22 23:59:59.980",
