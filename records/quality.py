@@ -100,7 +100,7 @@ STEADY_ERROR = Criterion(
     Limit(1.0, "deg", "seed 001 calls errors of 0.5 to 1 deg good"),
 )
 STEADY_SHARE = Criterion(
-    "steady error",
+    "steady error, share",
     "largest mean error at rest of what is no angle, as a share of its largest step",
     Limit(0.5, "%", "a quarter of what counts as settled"),
     Limit(2.0, "%", "what the field calls settled"),

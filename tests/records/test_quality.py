@@ -6,6 +6,8 @@ from records.quality import (
     CRITERIA,
     MARGINS,
     MISFIT,
+    STEADY_ERROR,
+    STEADY_SHARE,
     TRUTH,
     Colour,
     Quality,
@@ -23,6 +25,16 @@ def test_a_figure_has_the_colour_of_the_limit_that_it_keeps() -> None:
         assert criterion.look("x", criterion.amber).colour is Colour.AMBER
         assert criterion.look("x", 1.001 * criterion.amber).colour is Colour.RED
         assert criterion.look("x", math.nan).colour is Colour.RED
+
+
+def test_each_figure_is_told_beside_the_limits_of_its_own_unit() -> None:
+    # Truth: an angle rests 6.15 deg off, a level 0.001 % of its step; limits of the first are in deg, of the other in %.
+    steady, share = STEADY_ERROR.look("psi_rad", 6.15), STEADY_SHARE.look("h_m", 0.001)
+    assert len({criterion.name for criterion in CRITERIA}) == len(CRITERIA)
+    rows = [row[2:6] for row in quality_rows(Quality((steady, share)))]
+    assert rows == [("6.15 deg", "psi_rad", "0.1 deg", "1 deg"), ("0.001 %", "h_m", "0.5 %", "2 %")]
+    assert quality_sentence(Quality((steady,))) == "Red: steady error of psi_rad 6.15 deg, green up to 0.1 deg."
+    assert quality_rows(Quality((STEADY_ERROR.look("psi_rad", 6.4e-15),)))[0][2] == "0 deg"
 
 
 def test_the_worst_of_all_that_was_looked_at_decides() -> None:

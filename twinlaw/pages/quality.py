@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from records.quality import CRITERIA, RANK, Look, Quality, worst
 from twinlaw.pages.page import Row, Section, Table
 
+ROUNDING = 1e-9  # in a criterion's unit: limits are 0.1 and more, double precision leaves this of 0
 SAID = 3  # reasons that are named in the sentence
 BY_NAME = {criterion.name: criterion for criterion in CRITERIA}
 HEADING = ("looked at", "how many", "worst", "", "green up to", "amber up to", "colour")
@@ -39,7 +40,7 @@ def _reason(look: Look) -> str:
 
 
 def _figure(value: float | None, unit: str) -> str:
-    return "not finite" if value is None else f"{value:.3g} {unit}".rstrip()
+    return "not finite" if value is None else f"{value if abs(value) > ROUNDING else 0.0:.3g} {unit}".rstrip()
 
 
 def _limit(criterion: str) -> str:
@@ -57,7 +58,7 @@ def quality_rows(quality: Quality) -> list[Row]:
             _figure(look.value, look.unit),
             look.of,
             _limit(name),
-            f"{BY_NAME[name].amber:g} {look.unit}".rstrip(),
+            f"{BY_NAME[name].amber:g} {BY_NAME[name].unit}".rstrip(),
             str(look.colour),
         )
         for name, look in quality.by_criterion.items()
