@@ -64,11 +64,11 @@ class FrequencyIdentification:
 
 
 def frequency_identification(
-    plant: Plant, fit: FrequencyFit, holdout: Sequence[Record] = ()
+    plant: Plant, fit: FrequencyFit, holdout: Sequence[Record] = (), signs: Mapping[str, str] | None = None
 ) -> FrequencyIdentification:
-    """All that is to be told about a match."""
+    """All that is to be told about a match; `signs` are `signs_of` the plant's model, where it has one of this project."""
     begun = dict(zip(fit.model.names, fit.searches[0].start.tolist(), strict=True))
-    result = identification(plant, (), Belief(fit.model.names, fit.theta, fit.covariance), begun=begun)
+    result = identification(plant, (), Belief(fit.model.names, fit.theta, fit.covariance), begun=begun, signs=signs)
     theta = np.array([entry.value for entry in result.estimates])
     T, T_stated = _response(fit, theta), _response(fit, fit.model.start)
     pairs = tuple(pairs_of(fit, T, T_stated))

@@ -39,8 +39,8 @@ def held_out_look(test: ResidualTest) -> Look:
 
 
 def off_truth(estimates: Sequence[Estimated], truth: Mapping[str, float]) -> list[Look]:
-    """Each estimate whose truth is known and that may be off."""
-    known = [entry for entry in estimates if entry.name in truth and entry.sd > 0.0]
+    """Each estimate that the data told and whose truth is known; a value that was kept is the plant file's."""
+    known = [entry for entry in estimates if entry.identified and entry.name in truth and entry.sd > 0.0]
     return [TRUTH.look(entry.name, abs(entry.value - truth[entry.name]) / entry.sd) for entry in known]
 
 

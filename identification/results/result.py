@@ -1,7 +1,7 @@
 """What an identification hands on: a plant file with earned sd and correlations, and all that is to be told about how it came about."""
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from identification.experiments.table import AID_UNITS
@@ -24,7 +24,8 @@ class Estimated:
     """One coefficient: where its fit started; value, sd and 95 % interval as plant.toml holds them; whether the data told it at all.
 
     What must be positive, a time constant or an inertia, is taken as normal by its logarithm, so its interval ends above zero: where
-    the sd is a small share of the value it is the usual one, value -+ so many sd.
+    the sd is a small share of the value it is the usual one, value -+ so many sd. That of what must not be negative, a dry friction,
+    ends at 0.
     One that they did not tell keeps the plant file's value and sd; `by_data` and `by_data_sd` are what the data say of each.
     """
 
@@ -108,17 +109,17 @@ def identification(
     belief: Belief,
     aids: Sequence[tuple[Belief, float]] = (),
     begun: Mapping[str, float] | None = None,
-    positive: Collection[str] = (),
+    signs: Mapping[str, str] | None = None,
 ) -> Identification:
     """Put the final belief into the plant; what the data do not tell keeps the file's value and sd.
 
-    `begun` tells where a fit that is none of the `stages` started, by name; `positive` are `positive_coefficients` of the plant's model.
+    `begun` tells where a fit that is none of the `stages` started, by name; `signs` are `signs_of` the plant's model.
     """
     stated = numbers(plant)
     factors = interval_factors(stage for _, stage in stages)
     began = _begun(stages) if begun is None else begun
     estimates = tuple(
-        _estimated(name, began[name], stated[name], belief, factors.get(name, NORMAL), name in positive)
+        _estimated(name, began[name], stated[name], belief, factors.get(name, NORMAL), (signs or {}).get(name, "any"))
         for name in belief.names
     )
     found = tuple(_aid(name, began[name], part, interval_factor(dof)) for part, dof in aids for name in part.names)
@@ -136,37 +137,40 @@ def _aid_unit(name: str) -> str:
     return name.rpartition("_")[2] if name.startswith("offset.") and "_" in name else AID_UNITS.get(name, "")
 
 
-def positive_coefficients(model: Model) -> frozenset[str]:
-    """The coefficients that the model demands to be above zero."""
-    return frozenset(str(symbol) for spec in model.parameters if spec.sign == "positive" for symbol in spec.symbols)
+def signs_of(model: Model) -> dict[str, str]:
+    """What the model demands of each coefficient's sign: "positive", "non-negative" or "any"."""
+    return {str(symbol): spec.sign for spec in model.parameters for symbol in spec.symbols}
 
 
-def interval(value: float, reach: float, *, positive: bool) -> tuple[float, float]:
-    """Both ends of an interval of half the width `reach` about a value; of one that is positive the same in shares of it, by factors."""
-    if not positive or value <= 0.0:
+def interval(value: float, reach: float, sign: str = "any") -> tuple[float, float]:
+    """Both ends of an interval of half the width `reach` about a value, without what its `sign` rules out.
+
+    Of one that must be positive the reach is in shares of it, by factors; one that must not be negative is cut off at 0.
+    """
+    if sign == "non-negative" and value >= 0.0:
+        return max(value - reach, 0.0), value + reach
+    if sign != "positive" or value <= 0.0:
         return value - reach, value + reach
     factor = math.exp(min(reach / value, MOST_POWERS))
     return value / factor, value * factor
 
 
 def _estimated(
-    name: str, start: float, stated: tuple[float, float, str], belief: Belief, factor: float, positive: bool
+    name: str, start: float, stated: tuple[float, float, str], belief: Belief, factor: float, sign: str
 ) -> Estimated:
     """`stated` are value, sd and unit of the plant file; what it states as 0 has no size by which to be called poor."""
     before, before_sd, unit = stated
     value, sd = _told(name, belief)
     told = factor * sd < FARTHEST * max(abs(before), abs(value), before_sd) or before == 0.0
     kept, kept_sd, reach = (value, sd, factor) if told else (before, before_sd, NORMAL)
-    lower, upper = interval(kept, reach * kept_sd, positive=positive)
+    lower, upper = interval(kept, reach * kept_sd, sign)
     return Estimated(name, unit, start, kept, kept_sd, lower, upper, told, value, sd)
 
 
 def _aid(name: str, start: float, belief: Belief, factor: float) -> Estimated:
     """What the plant file does not have."""
     value, sd = _told(name, belief)
-    return Estimated(
-        name, _aid_unit(name), start, value, sd, *interval(value, factor * sd, positive=False), True, value, sd
-    )
+    return Estimated(name, _aid_unit(name), start, value, sd, *interval(value, factor * sd), True, value, sd)
 
 
 def _told(name: str, belief: Belief) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from twinlaw.pages.identify.frequency_tables import (
     pair_heading,
     pair_rows,
 )
-from twinlaw.pages.identify.summary import estimate_heading, estimate_rows
+from twinlaw.pages.identify.summary import SCALE, estimate_heading, estimate_rows
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.quality import quality_section, quality_sentence
 
@@ -55,7 +55,9 @@ def _parameters(found: FrequencyIdentification, truth: Truth | None) -> Section:
     known = None if truth is None else truth.values
     estimates = found.result.estimates
     rows = estimate_rows(estimates, found.fit.at_bound, known)
-    return Section("Parameters", found.notes or ("Nothing to remark.",), (Table(rows, estimate_heading(known)),))
+    return Section(
+        "Parameters", (*(found.notes or ("Nothing to remark.",)), SCALE), (Table(rows, estimate_heading(known)),)
+    )
 
 
 def _matrices(found: FrequencyIdentification, truth: Truth | None) -> Section:

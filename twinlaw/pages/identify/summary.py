@@ -17,7 +17,10 @@ AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
 FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated", "")
 
 # Beside the table of estimates, for whoever compares an interval with the value and the sd.
-SCALE = "A parameter that must be positive is taken as normal by its logarithm: its interval is one of factors, and ends above zero."
+SCALE = (
+    "A parameter that must be positive is taken as normal by its logarithm: its interval is one of factors, and ends above zero. "
+    "That of one that must not be negative ends at 0."
+)
 
 
 def estimate_heading(truth: Mapping[str, float] | None) -> tuple[str, ...]:

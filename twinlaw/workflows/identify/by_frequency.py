@@ -21,6 +21,7 @@ from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
 from identification.frequency.truth import Truth, truth_of
 from identification.results.notes import bound_warning
+from identification.results.result import signs_of
 from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
 from records.errors import BadInput
@@ -148,7 +149,8 @@ def _operating_point(
     means = dict(zip(outputs, np.mean(np.concatenate([record.y for record in records]), axis=0).tolist(), strict=True))
     limits = read_limits(chosen.bounds, coefficient_names(bound.model))
     names = free_names(bound, chosen.free)
-    found = _matched(chosen, bound.plant, operating_point_model(bound, names, means, limits), records, others, told)
+    model, signs = operating_point_model(bound, names, means, limits), signs_of(bound.model)
+    found = _matched(chosen, bound.plant, model, records, others, told, signs)
     found = replace(found, notes=(*filter(None, [inputs.doubt]), *inputs.notes, *found.notes))
     truth = None if true is None else truth_of(true, operating_point_model(bind(true), names, means), found.fit)
     return Done(found, truth)
@@ -161,9 +163,10 @@ def _matched(
     records: Sequence[Record],
     held: Sequence[Record],
     told: Told,
+    signs: Mapping[str, str] | None = None,
 ) -> FrequencyIdentification:
     band = None if chosen.band_rad_s is None else (chosen.band_rad_s[0], chosen.band_rad_s[1])
-    return frequency_identification(plant, match(model, records, band, seed=chosen.seed, told=told), held)
+    return frequency_identification(plant, match(model, records, band, seed=chosen.seed, told=told), held, signs)
 
 
 def _read(

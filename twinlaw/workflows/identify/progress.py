@@ -8,7 +8,7 @@ from pathlib import Path
 
 from identification.fit.belief import NOTHING, Belief
 from identification.results.facts import facts
-from identification.results.result import Identification, identification, interrupted, positive_coefficients
+from identification.results.result import Identification, identification, interrupted, signs_of
 from identification.stages.estimate import Estimate
 from records.files import write_atomic
 from records.plant import Plant, save_plant
@@ -34,8 +34,8 @@ class Done:
     def result(self, plant: Plant) -> Identification:
         """All of it put into the plant."""
         # A plant that is matched to responses has a model of its own kind, and no stages.
-        positive = positive_coefficients(bind(plant).model) if self.stages else ()
-        return identification(plant, self.stages, self.belief, self.aids, positive=positive)
+        signs = signs_of(bind(plant).model) if self.stages else None
+        return identification(plant, self.stages, self.belief, self.aids, signs=signs)
 
 
 class Progress:
