@@ -85,13 +85,14 @@ def _sliced(ranges: LawRanges, table: ControllerTable, slices: int) -> Iterator[
 
 def stated_motion(table: ControllerTable, motion: Motion) -> str:
     """The assumptions of a bound, in words."""
-    limits, rates = (
-        " and ".join(f"{value:g}" for value in values) for values in (motion.limits_rad, motion.rates_rad_s)
+    return " and ".join(
+        f"{loop.output} within {_measured(limit, loop.output)}, changing by at most {_measured(rate, loop.output)} a second"
+        for loop, limit, rate in zip(table.loops, motion.limits_rad, motion.rates_rad_s, strict=True)
     )
-    if all(loop.output_unit == "rad" for loop in table.loops):
-        return f"angles within {limits} rad moving at most {rates} rad/s"
-    units = " and ".join(unit_of(loop.output) or "1" for loop in table.loops)
-    return f"measurements within {limits} ({units}) moving at most {rates} of these a second"
+
+
+def _measured(value: float, name: str) -> str:
+    return f"{value:.3g} {unit_of(name)}".rstrip()
 
 
 def restricted_voltages(

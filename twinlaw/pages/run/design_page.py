@@ -101,7 +101,7 @@ def _schedule_label(report: DesignReport) -> str:
 def _coefficients(report: DesignReport) -> Section:
     if not report.is_scheduled:
         return _constants(report)
-    worst = [f"{axis.axis} {_small(report.loop(axis.axis), axis.feedforward_error_V)}" for axis in report.axes]
+    worst = [f"{_small(report.loop(axis.axis), axis.feedforward_error_V)} ({axis.axis})" for axis in report.axes]
     return Section(
         f"Coefficients over the {report.angle}",
         (
@@ -174,7 +174,8 @@ def _values(axis: AxisReport, of: str, place: int) -> tuple[Array, Sequence[floa
 def _named(loop: Loop, of: str, place: int) -> tuple[str, str]:
     """A coefficient's name and unit."""
     volt, per = unit_of(loop.input) or "1", unit_of(loop.output) or "1"
-    return ("u_ff", volt) if of == "u_ff" else (f"{of}_{place}", f"{volt}/{per}" if of == "q" else "-")
+    gain = volt if per == "1" else f"{volt}/({per})" if "/" in per or " " in per else f"{volt}/{per}"
+    return ("u_ff", volt) if of == "u_ff" else (f"{of}_{place}", gain if of == "q" else "-")
 
 
 def _fit(factor: float, points_rad: Array, designed: Array, fine_rad: Array, fitted: Array) -> Sequence[Curve]:

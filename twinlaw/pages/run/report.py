@@ -123,7 +123,9 @@ def _verified(verification: Verification, sizes: ImageSizes) -> Section:
         "Verification",
         (
             "Equality is of bits: the exact model in Python, the C compiled for this computer, and the same C inside the image on the "
-            "target, stepped side by side. The rounding bound is proved, not sampled: " + verification.rounding.method,
+            "target, stepped side by side. The rounding bound is proved, not sampled: "
+            + verification.rounding.method
+            + ".",
         ),
         (
             Table(verification_rows(verification), ("check", "figures", "")),
