@@ -1,5 +1,6 @@
 """A report as one self-contained HTML page: sentences, tables and SVG plots, no script and no network."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -44,6 +45,11 @@ class Page:
     sections: Sequence[Section]
 
 
+def parts(sentence: str) -> list[str]:
+    """A sentence in parts, every second of which is an option and is broken into no lines; nor is one before a per cent sign."""
+    return re.split(r"(--[a-z][a-z-]*)", sentence.replace(" %", "\u00a0%"))
+
+
 def page_text(page: Page) -> str:
     """The page as HTML text; text is escaped, plots are not."""
     environment = Environment(
@@ -54,5 +60,6 @@ def page_text(page: Page) -> str:
         lstrip_blocks=True,
     )
     environment.filters["unsigned_zeros"] = unsigned_zeros
+    environment.filters["parts"] = parts
     facts = {name: getattr(page, name) for name in Page.__dataclass_fields__}
     return environment.get_template("report.html.j2").render(facts)
