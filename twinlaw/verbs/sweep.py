@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from identification.frequency.flights.helicopter import SAMPLE_PERIOD_S, sweep_flights
-from identification.frequency.flights.plant_sweep import closed_loop_sweeps
+from identification.frequency.flights.plant_sweep import band_of, closed_loop_sweeps
 from identification.frequency.flights.sweep import design_sweep
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import check_plant
@@ -34,7 +34,7 @@ from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.designing import design_controller
 from twinlaw.workflows.identify.repeated import repeated
 
-BANDS_RAD_S = {LATERAL: (0.25, 12.0), "ce150": (0.3, 10.0)}
+HELICOPTER_BAND_RAD_S = (0.25, 12.0)
 AMPLITUDES = {"sticks": (2.0, 4.0), "inputs": (0.5, 0.5), "references": (0.12, 0.3)}
 SHARE = 0.05  # of the range of an input, or of a reference, that a sweep of any other plant's is large
 
@@ -44,7 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     --cluster, --out, --json.
     """
     options.plant(parser)
-    options.band(parser, "default: 0.3 to 10; of the helicopter 0.25 to 12")
+    options.band(
+        parser,
+        "default: 0.3 to 10, of loops slower than 2.7 rad/s as much slower as they are; of the helicopter 0.25 to 12",
+    )
     parser.add_argument("--duration-s", type=float, metavar="T", help="of the sweep; default: 5.5 periods of LOW")
     parser.add_argument(
         "--amplitudes", nargs="+", type=float, metavar="SIZE",
@@ -97,7 +100,8 @@ def run(chosen: argparse.Namespace) -> int:
             "give another plant",
         )
     designed = design_controller(chosen.plant)
-    low, high = chosen.band_rad_s or BANDS_RAD_S["ce150"]
+    slowest_rad_s = min(abs(axis.designed_slowest_rad_s) for axis in designed.report.axes)
+    low, high = chosen.band_rad_s or band_of(slowest_rad_s)
     sweep = design_sweep(low, high, designed.table.sample_period_s, chosen.duration_s)
     with console.stage("flying the sweeps"):
         amplitudes = _loop_amplitudes(chosen, designed.table)
@@ -125,7 +129,7 @@ def _amplitudes(chosen: argparse.Namespace, default: tuple[float, ...]) -> tuple
 
 
 def _fly_helicopter(chosen: argparse.Namespace, plant: Plant) -> int:
-    low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
+    low, high = chosen.band_rad_s or HELICOPTER_BAND_RAD_S
     sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
     return _write(chosen, sweep_flights(plant, sweep, _sticks(chosen), chosen.repeats, chosen.seed))
 
@@ -145,7 +149,7 @@ def _write(chosen: argparse.Namespace, logs: Mapping[str, RunLog]) -> int:
 
 
 def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
-    low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
+    low, high = chosen.band_rad_s or HELICOPTER_BAND_RAD_S
     sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
     order = (plant, sweep, _sticks(chosen), chosen.repeats)
     seeds = range(chosen.seed, chosen.seed + chosen.repetitions)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from identification.frequency.flights.plant_sweep import band_of
 from identification.frequency.flights.sweep import design_sweep, highest_rad_s, phase_rad, record_s, sweep_input
 from records.errors import BadInput
 
@@ -18,6 +19,12 @@ def test_it_runs_from_the_lowest_frequency_to_the_highest():
     np.testing.assert_allclose(omega[t_s < 2.0 * math.pi / 0.5], 0.5, rtol=1e-3)  # one whole period of the lowest
     np.testing.assert_allclose(omega[-1], 10.0, rtol=5e-3)
     assert np.all(np.diff(omega) > -1e-6)
+
+
+@pytest.mark.parametrize(("slowest", "band"), [(2.7, (0.3, 10.0)), (15.0, (0.3, 10.0)), (0.27, (0.03, 1.0))])
+def test_a_slower_loop_is_swept_as_much_slower(slowest, band):
+    # Truth: the CE150's loops, slowest pole at -2.7 rad/s, are swept from 0.3 to 10 rad/s.
+    assert band_of(slowest) == pytest.approx(band)
 
 
 def test_it_begins_and_ends_in_trim_and_keeps_its_amplitude():
