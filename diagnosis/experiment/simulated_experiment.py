@@ -9,7 +9,7 @@ with J_A its slopes by the plant's coefficients and those of its effects that th
 plant file say of them. z standard deviations apart, the log likelihoods of A and B will differ by about z^2 / 2.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -146,13 +146,31 @@ def missed(data: Case, one: Fit, plan: Plan, noisy: Hypothesis) -> float | None:
 
 
 def outcomes(logs: Sequence[RunLog], floor: Mapping[str, float]) -> tuple[str, float, tuple[float, float]] | None:
-    """Where two simulated logs differ most in units of each column's floor: its name, when (s from the start), both values."""
+    """Where two simulated logs differ most in units of each column's floor: its name, when (s from the start), both values.
+
+    An axis without stops may run away, and its angle then says nothing to who looks at the rig: what lies before goes first.
+    """
+    upright = min(_turned_round(log, floor) for log in logs)
+    return _farthest_apart(logs, floor, upright) or _farthest_apart(logs, floor, len(logs[0].t_s))
+
+
+def _farthest_apart(
+    logs: Sequence[RunLog], floor: Mapping[str, float], rows: int
+) -> tuple[str, float, tuple[float, float]] | None:
+    """The same among the first rows."""
     first, second = logs
     best, found = 1.0, None
     for name, least in floor.items():
-        gap = np.abs(first.column(name) - second.column(name)) / least
+        gap = np.abs(first.column(name) - second.column(name))[:rows] / least
         row = int(np.argmax(gap))
         if gap[row] > best:
             values = float(first.column(name)[row]), float(second.column(name)[row])
             best, found = float(gap[row]), (name, float(first.t_s[row] - first.t_s[0]), values)
     return found
+
+
+def _turned_round(log: RunLog, names: Iterable[str]) -> int:
+    """The first row in which an angle is a whole turn and more from where it began; the number of rows where none is."""
+    angles = [log.column(name) for name in names if name.endswith("_rad")]
+    beyond = np.array([np.abs(angle - angle[0]) >= 2.0 * np.pi for angle in angles]).any(axis=0)
+    return int(np.argmax(beyond)) if np.any(beyond) else len(log.t_s)

@@ -10,7 +10,7 @@ import pytest
 from diagnosis.decide.weighing import Weighed
 from diagnosis.experiment.menu import gravity_parameters, plans
 from diagnosis.experiment.next_experiment import next_experiment
-from diagnosis.experiment.simulated_experiment import missed, recorded, setting, simulate_experiment
+from diagnosis.experiment.simulated_experiment import missed, outcomes, recorded, setting, simulate_experiment
 from diagnosis.experiment.stand_in import stand_in, steered
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import fit
@@ -107,6 +107,20 @@ def test_two_names_of_one_torque_are_not_said_to_be_told_apart(case: Case, tilt:
     assert found["separates"] == []
     told = "no run of the menu tells azimuth.tilt from azimuth.tilt + azimuth.offset_force"
     assert found["expected_outcome"].startswith(told)
+
+
+def test_what_to_look_for_lies_before_an_axis_runs_away(fly: Fly) -> None:
+    # Truth: from 1 s on the azimuth turns at 9 rad/s in one run, a whole turn by 1.698 s; the elevation is 0.2 rad higher up to 0.5 s.
+    still = fly(11, {}, seconds=4.0)
+    since_s = still.t_s - still.t_s[0]
+    moved = np.zeros_like(still.y)
+    moved[:, 0], moved[:, 1] = np.where(since_s < 0.5, 0.2, 0.0), 9.0 * np.maximum(since_s - 1.0, 0.0)
+    still = replace(still, y=np.zeros_like(still.y))
+    found = outcomes([still, replace(still, y=moved)], {"psi_rad": 0.001, "phi_rad": 0.1})
+    assert found == ("psi_rad", 0.0, (0.0, 0.2))
+    name, after_s, values = outcomes([still, replace(still, y=moved)], {"phi_rad": 0.1}) or ("", 0.0, ())
+    assert (name, after_s) == ("phi_rad", pytest.approx(1.69))
+    assert max(values) < 2.0 * np.pi
 
 
 def test_nothing_undecided_asks_for_nothing(case: Case, spring: FittedHypothesis, tilt: FittedHypothesis) -> None:
