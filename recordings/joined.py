@@ -10,7 +10,7 @@ from recordings.signals import counted
 from records.log import LogColumns
 from records.logs.restarts import pause_s, restart_rows
 
-SPARSE = 1 / 3  # of a column without a number: of two rates the nearest that loggers write into one table are 3 to 2
+SPARSE = 0.3  # of a column without a number: of two rates the nearest that loggers write into one table are 3 to 2, a third without
 EVENLY = 10  # times the usual rows to the next number: beyond it a signal was not logged for a while, and nobody knows what it was
 
 

@@ -23,7 +23,9 @@ from recordings.formats.text.cells import (
 )
 from recordings.formats.text.decoding import decoded
 from recordings.formats.text.headings import name_and_unit
-from recordings.formats.text.layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, Line, find_layout, split
+from recordings.formats.text.layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, find_layout, split
+from recordings.formats.text.lines import Line
+from recordings.formats.text.monitor import as_table
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal, counted
 from records.errors import BadInput
@@ -50,10 +52,11 @@ def read(path: Path, asked: TextLayout) -> Contents:
     lines, comments, said = _lines(text, asked.skip)
     if said and asked.separator is None:
         asked = replace(asked, separator=said)
+    lines, monitored = as_table(lines)
     layout = find_layout(lines, comments, asked, str(path))
     body, left_out = _body(*_without_headers(lines, layout), layout)
     _check_upright(body, layout, str(path))
-    told = (*found, *layout.found, *_comments(comments), *left_out)
+    told = (*found, *monitored, *layout.found, *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
     singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
     return Contents(with_clocks(with_clocks_in_front(signals)), _sidecar(path), told, unread, singles=singles)

@@ -8,6 +8,7 @@ from statistics import median, mode
 
 from recordings.formats.text.cells import DECIMALS, is_grouped, is_missing, is_number, number
 from recordings.formats.text.labview import units_and_numbers
+from recordings.formats.text.lines import Line
 from recordings.layout import TextLayout
 from recordings.units import known
 from records.errors import BadInput
@@ -20,14 +21,6 @@ COMMENTS = ("#", "%", "//")
 _KIND = re.compile(
     r"[fiu]\d{1,2}|float(32|64)?|double|real|lreal|u?s?d?int\d*|bool(ean)?"
 )  # as INCA, NumPy and PLCs write it
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of a file that is neither empty nor a comment, by its number from 1."""
-
-    number: int
-    text: str
 
 
 @dataclass(frozen=True)
