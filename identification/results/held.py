@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from identification.fit.belief import stated
 from identification.fit.normal_equations import at
 from identification.fit.problem import Prior, Problem
+from identification.results.plant_file import numbers
 from identification.runs.run import coefficient_names
 from identification.stages.estimate import Estimate
 from sim.bind import BoundPlant
@@ -18,9 +19,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Leaning:
-    """A parameter `name` that is off by `by`, more than its own sd, if those `held` are off by theirs."""
+    """A parameter `name`, in `unit`, that is off by `by`, more than its own sd, if those `held` are off by theirs."""
 
     name: str
+    unit: str
     by: float
     sd: float
     held: tuple[str, ...]
@@ -40,10 +42,10 @@ def leaning(bound: BoundPlant, fit: Estimate) -> tuple[Leaning, ...]:
     moves = -fit.belief.covariance @ _information(fit, held)[:own, own:]
     spread = known.part(held)
     by = np.sqrt(np.einsum("ij,jk,ik->i", moves, spread.covariance, moves))
-    each = np.abs(moves) * spread.sd
+    each, units = np.abs(moves) * spread.sd, numbers(bound.plant)
     rows = zip(fit.belief.names, by.tolist(), fit.belief.sd.tolist(), each, strict=True)
     return tuple(
-        Leaning(name, off, sd, tuple(held[place] for place in np.argsort(-row) if row[place] > sd))
+        Leaning(name, units[name][2], off, sd, tuple(held[place] for place in np.argsort(-row) if row[place] > sd))
         for name, off, sd, row in rows
         if off > sd
     )

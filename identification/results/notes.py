@@ -1,6 +1,6 @@
 """What is to be told of a fit besides its numbers, a sentence each: what it cannot tell, what contradicts what, what no sensor does."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from identification.results.held import Leaning
 from identification.stages.estimate import Estimate
@@ -13,19 +13,22 @@ MOST_DIRECTIONS = 3
 MOST_HELD = 4
 
 
-def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
-    """What one stage cannot tell, by direction; what contradicts earlier data, by parameter; residuals that are no sensor's errors."""
+def stage_notes(title: str, stage: Estimate, units: Mapping[str, str]) -> tuple[str, ...]:
+    """What one stage cannot tell, by direction; what contradicts earlier data, by parameter, in its unit; residuals that are no sensor's
+    errors.
+    """
     blind = [f"{title}: {_direction(entry)}" for entry in stage.unseen[:MOST_DIRECTIONS]]
     if len(stage.unseen) > MOST_DIRECTIONS:
         blind.append(f"{title}: {len(stage.unseen) - MOST_DIRECTIONS} more such directions, in identification.json")
     pulled = [
-        f"{title}: contradicts earlier data in {entry.name}: {entry.before:.4g} before, {entry.after:.4g} now, "
+        f"{title}: contradicts earlier data in {entry.name}: {entry.before:.4g} before, {_with_unit(entry.after, entry.name, units)} now, "
         f"{entry.sds:.0f} sd apart; find out what differs, or leave one of them out"
         for entry in stage.contradictions[:3]
     ]
     against = [
         f"{title}: {entry.run} contradicts {entry.against} in {entry.name}: {entry.own:.4g} by itself, "
-        f"{entry.others:.4g} by {entry.against}, {entry.sds:.0f} sd apart; find out what differs, or leave one of them out"
+        f"{_with_unit(entry.others, entry.name, units)} by {entry.against}, {entry.sds:.0f} sd apart; "
+        "find out what differs, or leave one of them out"
         for entry in stage.discords[:3]
     ]
     coloured = [
@@ -39,6 +42,10 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for name in stage.at_bound
     ]
     return (*blind, *bound, *pulled, *against, *coloured)
+
+
+def _with_unit(value: float, name: str, units: Mapping[str, str]) -> str:
+    return f"{value:.4g} {units.get(name, '')}".rstrip()
 
 
 def _in_its_unit(test: ResidualTest) -> str:
@@ -63,7 +70,8 @@ def leaning_notes(title: str, found: Sequence[Leaning]) -> tuple[str, ...]:
     )
     return (
         f"{title}: the intervals take {named or 'what was held'} as exact; by the sd in the plant file {worst.name} may be off by "
-        f"{worst.by:.2g}, {worst.by / worst.sd:.2g} times the sd stated: free them too (--free), or count what the file knows (--prior)",
+        f"{worst.by:.2g} {worst.unit}, {worst.by / worst.sd:.2g} times the sd stated: "
+        "free them too (--free), or count what the file knows (--prior)",
     )
 
 

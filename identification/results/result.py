@@ -78,12 +78,13 @@ class Identification:
     @property
     def notes(self) -> tuple[str, ...]:
         """One sentence for each thing that the data cannot tell or tell twice in different ways."""
+        units = {entry.name: entry.unit for entry in (*self.estimates, *self.aids)}
         return (
             *self.remarks,
             *self.flags,
             *self._interrupted(),
             *self._unidentified(),
-            *(note for title, stage in self.stages for note in stage_notes(title, stage)),
+            *(note for title, stage in self.stages for note in stage_notes(title, stage, units)),
         )
 
     def _interrupted(self) -> tuple[str, ...]:

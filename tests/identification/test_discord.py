@@ -56,14 +56,16 @@ def test_the_log_of_another_rig_is_named_with_its_parameter(bound, other, run_of
     first = found.discords[0]
     assert (first.run, first.name) == ("log 2", "J_A")
     assert first.own / first.others == pytest.approx(1.2, rel=0.05)
-    assert any("log 2 contradicts the others in J_A" in note for note in stage_notes("three logs", found))
+    assert any(
+        "log 2 contradicts the others in J_A" in note for note in stage_notes("three logs", found, {"J_A": "kg m^2"})
+    )
 
 
 def test_two_logs_that_contradict_each_other_are_told_once(bound, other, run_of):
     runs = [run_of(bound, 1), run_of(other, 2)]
     found = estimate(runs, NAMES, ranges_of(bound, NAMES), NOTHING)
     assert [entry.name for entry in found.discords] == ["J_A"]
-    assert any("log 1 contradicts log 2 in J_A" in note for note in stage_notes("two logs", found))
+    assert any("log 1 contradicts log 2 in J_A" in note for note in stage_notes("two logs", found, {}))
 
 
 @pytest.fixture(scope="module")

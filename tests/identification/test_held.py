@@ -29,6 +29,7 @@ def test_an_inertia_leans_on_the_gravity_torque_that_was_held(bound, swing):
     assert moved.belief.value("J_E") - fit.belief.value("J_E") == pytest.approx(found["J_E"].by, rel=0.02)
     (note,) = leaning_notes("swing", list(found.values()))
     assert note.startswith("swing: the intervals take tau_gE as exact; by the sd in the plant file J_E may be off by ")
+    assert " kg m^2, " in note
 
 
 def test_what_counts_as_data_is_not_held(bound, swing):
