@@ -56,9 +56,8 @@ def test_the_log_of_another_rig_is_named_with_its_parameter(bound, other, run_of
     first = found.discords[0]
     assert (first.run, first.name) == ("log 2", "J_A")
     assert first.own / first.others == pytest.approx(1.2, rel=0.05)
-    assert any(
-        "log 2 contradicts the others in J_A" in note for note in stage_notes("three logs", found, {"J_A": "kg m^2"})
-    )
+    notes = stage_notes("three logs", found, {"J_A": "kg m^2"})
+    assert any("log 2 contradicts the others in J_A" in note and " kg m^2 by the others, " in note for note in notes)
 
 
 def test_two_logs_that_contradict_each_other_are_told_once(bound, other, run_of):
