@@ -15,7 +15,7 @@ import numpy as np
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
 from records.log import RunLog
-from records.text.units import unit_suffix
+from records.text.units import unit_of
 
 SHOWN = 3
 
@@ -71,7 +71,7 @@ def dead_findings(
 
 def amount(move: float, column: str, step: float) -> str:
     """A move in steps of the encoder, in the column's own unit where it has none."""
-    return f"{move / step:.0f} steps" if step > 0.0 else f"{move:.3g} {unit_suffix(column) or ''}".rstrip()
+    return f"{move / step:.0f} steps" if step > 0.0 else f"{move:.3g} {unit_of(column) or ''}".rstrip()
 
 
 def _in_words(stand: Stand, t_s: Array, values: Array, column: str, step: float) -> str:
@@ -84,7 +84,7 @@ def _ways(stand: Stand, column: str, step: float) -> Iterator[str]:
     if stand.jump_in:
         yield f"it jumps there by {amount(stand.jump_in, column, step)}"
     elif stand.speed_before:
-        yield f"it moved at {stand.speed_before:.2g} {unit_suffix(column) or ''}/s just before"
+        yield f"it moved at {stand.speed_before:.2g} {unit_of(column) or ''} a second just before"
     if stand.jump_out:
         yield f"it jumps away by {amount(stand.jump_out, column, step)}"
     if not stand.jump_in and not stand.jump_out:

@@ -48,6 +48,10 @@ def _with_unit(value: float, name: str, units: Mapping[str, str]) -> str:
     return f"{value:.4g} {units.get(name, '')}".rstrip()
 
 
+def _times(factor: float) -> str:
+    return f"{factor:.2g}" if factor < 9.95 else f"{factor:.0f}"
+
+
 def _in_its_unit(test: ResidualTest) -> str:
     return f"{test.rms:.2g} {unit_of(test.channel)}".rstrip()
 
@@ -70,7 +74,7 @@ def leaning_notes(title: str, found: Sequence[Leaning]) -> tuple[str, ...]:
     )
     return (
         f"{title}: the intervals take {named or 'what was held'} as exact; by the sd in the plant file {worst.name} may be off by "
-        f"{worst.by:.2g} {worst.unit}, {worst.by / worst.sd:.2g} times the sd stated: "
+        f"{worst.by:.2g} {worst.unit}, {_times(worst.by / worst.sd)} times the sd stated: "
         "free them too (--free), or count what the file knows (--prior)",
     )
 

@@ -69,6 +69,7 @@ def test_an_output_that_stands_while_its_axis_goes_on_is_told_with_its_times() -
     assert (found.finding.column, found.finding.severity) == ("phi_rad", EXCLUDE)
     assert (found.finding.start_s, found.finding.end_s) == (pytest.approx(3.2, abs=0.02), pytest.approx(3.8, abs=0.02))
     assert amount(3.0 * STEP_RAD, "phi_rad", STEP_RAD) == "3 steps"
+    assert amount(3.0, "omega_rad_s", 0.0) == "3 rad/s"
     assert (in_words(1, "row"), in_words(3, "row")) == ("1 row", "3 rows")
 
 

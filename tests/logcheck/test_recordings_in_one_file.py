@@ -148,7 +148,7 @@ def test_readings_that_stop_and_go_on_within_four_counts_of_there_are_left_out(p
     assert found.excluded is not None
     assert found.excluded[unread].mean() > 0.9
     assert found.excluded.sum() <= unread.sum() + 1
-    assert "/s just before" in found.finding.sentence
+    assert " a second just before" in found.finding.sentence
 
 
 @pytest.mark.parametrize("plant", ["maglev_coil", "aeroshield"])
