@@ -9,10 +9,11 @@ Left of = stands a number as the page writes it, right of it an expression witho
 
 - `PACKAGE.NAME` or `PACKAGE.MODULE.NAME`, a constant of a package, in any of its folders, or a field of one; the module where two differ;
 - `protocol.NAME`, a constant of the serial line's declaration;
+- `firmware.NAME`, a number that the C of the firmware defines;
 - `PLANT.section.key` of plants/PLANT.toml;
 - `results.NAME.key...` of docs/results/NAME.json, which a command wrote (tests/docs/results.py); a page rounds it, and may round others of
   its kind alike; a key's hyphen is written _;
-- len, min, max of these.
+- len, min, max, round of these.
 
 A comment speaks of the text between the headings about it.
 """
@@ -37,7 +38,7 @@ NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 _COMMENT = re.compile(rf"<!--((?:{NUMBER}=[^\s,]+?,?)+)-->")
 _BORDER = re.compile(r"^#+ .*$", flags=re.MULTILINE)
 _NAME = re.compile(r"[A-Za-z_]\w*(?:\.\w+)+")
-_KNOWN = {"len": len, "min": min, "max": max, "__builtins__": {}}
+_KNOWN = {"len": len, "min": min, "max": max, "round": round, "__builtins__": {}}
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,8 @@ def _resolved(name: str) -> Any:
     head, *rest = name.split(".")
     if head == "protocol":
         return PROTOCOL.constant(rest[0])
+    if head == "firmware":
+        return _defined(rest[0])
     if head == "results":
         return reached(result(rest[0]), rest[1:])
     if (ROOT / "plants" / f"{head}.toml").is_file():
@@ -103,6 +106,17 @@ def _resolved(name: str) -> Any:
     assert values, f"{name}: no module has it"
     assert all(np.array_equal(values[0], other) for other in values), f"{name}: name the module, as two differ"
     return values[0]
+
+
+@cache
+def _defined(name: str) -> int:
+    """The number of a `#define` of the firmware's C, which one file alone has."""
+    files = [path for path in (ROOT / "firmware").rglob("*") if path.suffix in (".c", ".h")]
+    texts = (path.read_text(encoding="utf-8") for path in files)
+    (found,) = (
+        int(number) for text in texts for number in re.findall(rf"^#define {name} (\d+)u?\b", text, re.MULTILINE)
+    )
+    return found
 
 
 def reached(found: Any, keys: Sequence[str]) -> Any:

@@ -190,6 +190,14 @@ def test_the_emulated_chip_says_what_its_boot_loader_says_it_is() -> None:
     assert int(identity, 16) & 0xFFF == STM32G071.boot_loader_id
 
 
+def _counter(timer: int) -> int:
+    """The address of a timer's counter, by the firmware's own header."""
+    text = (ROOT / "firmware" / "board" / "stm32" / "stm32.h").read_text(encoding="utf-8")
+    (base,) = re.findall(rf"#define TIM{timer} \(\(timer_registers \*\)(0x\w+?)u\)", text)
+    (offset,) = re.findall(r"offsetof\(timer_registers, CNT\) == (0x\w+)", text)
+    return int(base, 16) + int(offset, 16)
+
+
 def test_the_pages_say_what_the_record_says() -> None:
     board = STM32G071
     pairs = {
@@ -206,5 +214,8 @@ def test_the_pages_say_what_the_record_says() -> None:
         assert re.search(rf"^\| {pins} \| {start}\b", firmware, re.MULTILINE), start
     assert f"(device id 0x{board.boot_loader_id:x})" in hardware
     assert f"openocd -f {board.openocd_config}" in hardware
+    timers = (board.elevation_encoder.timer, board.azimuth_encoder.timer)
+    assert f"TIM{timers[0]}->CNT and TIM{timers[1]}->CNT" in hardware
+    assert all(f"mdw 0x{_counter(timer):08x}" in hardware for timer in timers)
     assert f"| line | {921_600:,} Bd 8N1 | {board.clock_hz // 10**6} MHz / 69".replace(",", " ") in hardware
     assert f"stack reserve ({board.stack_reserve_bytes // 1024} KiB)" in firmware
