@@ -63,9 +63,9 @@ def _unseen(note: Note) -> str:
     return f"too little excitation to see at the {note.subject}: {unseen_effects(note)}"
 
 
-def unseen_effects(note: Note) -> str:
-    """What an "unseen" note says of its place: the effects that would not show at any size, then those below a size."""
-    sizes = note.numbers
+def unseen_effects(note: Note, named: Callable[[str], str] = str) -> str:
+    """What an "unseen" note says of its place: the effects that would not show at any size, then those below a size; as `named`."""
+    sizes = {named(kind): size for kind, size in note.numbers.items()}
     never = ", ".join(kind for kind, size in sizes.items() if size is None)
     parts = [f"{never} of any size"] if never else []
     parts += [f"{kind} below {_size(size)}" for kind, size in sizes.items() if size is not None]

@@ -13,7 +13,7 @@ from diagnosis.detect.detection import detect
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.experiment.revealing import revealing_experiment
 from diagnosis.explain.notes import notes_of
-from diagnosis.explain.sentences import plain_sentence, sentence, sentences
+from diagnosis.explain.sentences import plain_sentence, sentence, sentences, unseen_effects
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
@@ -61,6 +61,11 @@ def test_notes_are_records_and_each_kind_has_its_sentence() -> None:
     moved = Note("moved_parameter", "K", {"deviations": -4.21, "value": 0.0123456, "stated": 0.01})
     assert sentence(moved) == "parameter K is -4.2 standard deviations from its stated value: 0.01235 instead of 0.01"
     assert sentence(Note("any", "log", {}, "as it was said")) == "as it was said"
+    size = {"symbol": "b_s", "value": 0.000829, "unit": "N m"}
+    hidden = Note("unseen", "azimuth", {"lower_stop": None, "inertia_shape": size})
+    assert unseen_effects(hidden, lambda kind: kind.replace("_", " ")) == (
+        "lower stop of any size; inertia shape below b_s = 0.000829 N m"
+    )
     told = Note("contradiction", "b", {"gain_nats": 251.0, "moved": {"K": 4.0}})
     assert "251 nats likelier" in sentence(told)
     assert "e^251 times likelier" in plain_sentence(told)

@@ -238,7 +238,9 @@ def test_other_parameters_stand_among_the_hypotheses_with_their_probability_and_
     assert "0.870" in lines[1]
     assert "J_A +12.0 sd, K_M -0.4 sd" in lines[1]
     page = text_of(ALONE, FURTHEST)
-    assert re.search(r"other parameters alone</td><td></td><td>87.0.%</td><td>J_A \+12.0 sd, K_M -0.4 sd", page)
+    assert re.search(
+        r'other parameters alone</td><td></td><td class="whole">87.0.%</td><td>J_A \+12.0 sd, K_M -0.4 sd', page
+    )
 
 
 def test_a_re_tune_that_explains_the_hold_out_is_said_with_its_parameters() -> None:

@@ -1,13 +1,21 @@
 """What a page does to its text before a browser breaks it into lines."""
 
 from records.quality import Colour
-from twinlaw.pages.page import Page, Section, page_text
+from twinlaw.pages.page import Page, Section, Table, page_text
 
 
 def test_a_line_ends_neither_before_a_per_cent_sign_nor_within_an_option() -> None:
     said = Section("Parameters", ("5 % of <x>: hold one of them (--free), or --trim-s",))
     page = page_text(Page("a", "b", Colour.GREEN, "Green: 5 %.", (), (said,)))
     assert (
-        '<p>5\u00a0% of &lt;x&gt;: hold one of them (<span class="option">--free</span>), or <span class="option">--trim-s</span></p>'
+        '<p>5\u00a0% of &lt;x&gt;: hold one of them (<span class="whole">--free</span>), or <span class="whole">--trim-s</span></p>'
     ) in page
     assert "Green: 5\u00a0%." in page
+
+
+def test_a_short_cell_is_one_line_whatever_stands_in_it() -> None:
+    table = Table([("3.22e-17", "0.057 + 0.439i", "a sentence that may be broken", "green")])
+    page = page_text(Page("a", "b", Colour.GREEN, "", (), (Section("Why", tables=(table,)),)))
+    assert '<td class="whole">3.22e-17</td><td class="whole">0.057 + 0.439i</td>' in page
+    assert "<td>a sentence" in page
+    assert '<td class="good whole">green</td>' in page

@@ -104,7 +104,7 @@ def _unseen(diagnosis: Diagnosis) -> Section | None:
     """What the notes say of effects that hide in these logs, by place."""
     notes = diagnosis.note_records
     rows = [
-        (note.subject.replace("_", " "), unseen_effects(note).replace("_", " "))
+        (note.subject.replace("_", " "), unseen_effects(note, lambda kind: kind.replace("_", " ")))
         for note in notes
         if note.kind == UNSEEN
     ]
