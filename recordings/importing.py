@@ -151,8 +151,10 @@ def _incomplete(missing: list[str], of: Source, columns: LogColumns, said: Mappi
 
 
 def _named(name: str, of: Source) -> str:
-    unit = of.signals[name].unit
-    return f"{name} [{unit}]" if unit else name
+    """A signal with what the file calls it, where that is another name, and its unit."""
+    signal, last = of.signals[name], name.rpartition(".")[2]
+    heading = f" ({signal.heading})" if signal.heading and last not in signal.heading else ""
+    return f"{name}{heading}{f' [{signal.unit}]' if signal.unit else ''}"
 
 
 def _time(mapping: ColumnMapping) -> dict[str, str]:

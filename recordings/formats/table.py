@@ -38,6 +38,7 @@ class Format:
 FORMATS: Mapping[tuple[str, ...], Format] = {
     (".csv", ".tsv", ".txt", ".dat", ".log", ".lvm", ".asc", ".prn"): Format("text.delimited", "table of text"),
     (".json", ".jsonl", ".ndjson"): Format("json_rows", "JSON file"),
+    (".npz", ".npy"): Format("numpy_arrays", "NumPy file"),
     (".mat",): Format("matlab", "MATLAB file", apart=True),  # version 7.3 as HDF5
     (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "h5py", "hdf5", apart=True),
     (".mf4", ".mdf"): Format("mdf", "MDF file", "asammdf", "mdf4", apart=True),

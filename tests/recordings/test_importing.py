@@ -7,7 +7,9 @@ import pytest
 from scipy.io import savemat
 
 from recordings.channels import Channel, Span, log_of_channels
+from recordings.importing import columns_of, log_of_contents
 from recordings.mapping.mapping import ColumnMapping
+from recordings.signals import Contents, Signal
 from records.errors import BadInput
 from tests.recordings.here import imported_here
 from tests.recordings.runs import CE150, FOUR, RUN, T_S, mapped, save_run
@@ -140,3 +142,15 @@ def test_an_angle_within_one_turn_and_counts_of_16_bits_are_counted_on_and_that_
     typed = imported_here(tmp_path / "run.mat", ColumnMapping({"psi_rad": "psi_deg*pi/180"}, per_turn=4096.0))
     assert typed.log.column("psi_rad").max() > 6.0
     assert any("unwrap(...) around it" in told for told in typed.found)
+
+
+def test_a_signal_is_shown_with_what_the_file_calls_it_where_that_is_another_name() -> None:
+    t_s = 0.01 * np.arange(50)
+    signals = {
+        "rec.X.Data": Signal(t_s, "s"),
+        "rec.Y(1).Data": Signal(t_s, "deg", "rec.X.Data", heading="Model/Elevation/Out1"),
+        "rec.psi": Signal(t_s, "deg", "rec.X.Data", heading="psi [deg]"),
+    }
+    with pytest.raises(BadInput) as refused:
+        log_of_contents(Contents(signals), "rec.mat", ColumnMapping(), columns_of("ce150"))
+    assert "rec.Y(1).Data (Model/Elevation/Out1) [deg], rec.psi [deg]" in refused.value.got
