@@ -60,7 +60,9 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
         looked = examine([log], without_effects(bound) if bound.effects else bound, names=[Path(asked.port).stem])
         demand(looked, OTHER_UNITS)
         odd = "".join(f"; {note.said}" for note in looked.notes)
-        who = f"log {asked.port}, twin {asked.plant}{odd}"
+        first_s = float(log.t_s[0])
+        counted = f"; times of the curves count from {first_s:g} s of the log" if first_s else ""
+        who = f"log {asked.port}, twin {asked.plant}{odd}{counted}"
         told = {"title": Path(asked.port).name, "who": who, **signals(bound)}
         return bound, LogSource(as_read(log, looked.logs[0]), told, looked.logs[0].begins), log.locked
     return bound, _open_board(asked, bound), ()

@@ -10,13 +10,14 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from diagnosis.validate.ahead import Lookahead
-from records.log import load_log
+from records.log import load_log, save_log
 from rig.emulator.ports.pty_port import PtyBoard
 from rig.link.client import BoardClient
 from sim.columns import log_columns
@@ -351,6 +352,20 @@ def test_nothing_is_left_to_be_compiled_when_a_flight_begins(carried: Path, tmp_
         check=True,
     )
     assert told.stdout.split(maxsplit=2) == ["4", "3.0", "[]\n"]
+
+
+def test_a_log_that_begins_late_says_from_where_the_page_counts(carried: Path, tmp_path: Path) -> None:
+    # Truth: notes tell of 44 s and later, curves of the log's first row and later.
+    log = load_log(carried / "hop.csv", log_columns(MODELS["ce150"]()))
+    save_log(tmp_path / "late.csv", replace(log, t_s=log.t_s + 44.0))
+    told = {}
+    for name, folder in (("hop", carried), ("late", tmp_path)):
+        asked = Watched(
+            str(folder / f"{name}.csv"), PLANT, carried / "controller.json", carried, None, "float32", False
+        )
+        told[name] = open_watched(asked)[1].facts()["who"]
+    assert "times of the curves count from 44 s of the log" in told["late"]
+    assert "count from" not in told["hop"]
 
 
 def test_a_signal_at_the_end_of_a_wait_ends_it(carried: Path) -> None:
