@@ -25,6 +25,7 @@ from recordings.formats.text.decoding import decoded
 from recordings.formats.text.headings import name_and_unit
 from recordings.formats.text.layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, find_layout, split
 from recordings.formats.text.lines import Line
+from recordings.formats.text.long_form import as_wide
 from recordings.formats.text.monitor import as_table
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal, counted
@@ -54,6 +55,10 @@ def read(path: Path, asked: TextLayout) -> Contents:
         asked = replace(asked, separator=said)
     lines, monitored = as_table(lines)
     layout = find_layout(lines, comments, asked, str(path))
+    wide = as_wide(lines, layout)
+    if wide is not None:
+        lines, found_too = wide[0], (*layout.found, *wide[1])
+        layout = replace(find_layout(lines, [], TextLayout("tab", layout.decimal), str(path)), found=found_too)
     body, left_out = _body(*_without_headers(lines, layout), layout)
     _check_upright(body, layout, str(path))
     told = (*found, *monitored, *layout.found, *_comments(comments), *left_out)

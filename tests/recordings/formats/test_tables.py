@@ -99,3 +99,33 @@ def test_an_input_that_was_not_logged_for_a_while_is_not_held(tmp_path: Path) ->
     (tmp_path / "run.csv").write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(rows))
     with pytest.raises(BadInput, match=r"no number at 1 s, in 100 of 260 rows"):
         imported_here(tmp_path / "run.csv", ColumnMapping())
+
+
+def long_form(heads: str, form: str) -> str:
+    """u_M, u_T, psi and phi at each of 100 instants, a row each."""
+    t_s = 0.01 * np.arange(100)
+    names = {"u_M_V": 5.0 + t_s, "u_T_V": 0.0 * t_s, "psi_rad": 0.1 * t_s**2, "phi_rad": -t_s}
+    rows = (
+        form.format(t=f"{t:.2f}", n=name, v=f"{of[k]:.9f}") for k, t in enumerate(t_s) for name, of in names.items()
+    )
+    return "\n".join([heads, *rows])
+
+
+@pytest.mark.parametrize(
+    ("heads", "form"), [("time,name,value", "{t},{n},{v}"), ("_value;_field;_time", "{v};{n};{t}")]
+)
+def test_a_table_of_a_signal_a_row_is_the_run(heads: str, form: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(long_form(heads, form))
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    t_s = 0.01 * np.arange(100)
+    np.testing.assert_allclose(done.log.t_s, t_s, atol=1e-9)
+    np.testing.assert_allclose(done.log.column("psi_rad"), 0.1 * t_s**2, atol=1e-9)
+    np.testing.assert_allclose(done.log.column("u_M_V"), 5.0 + t_s, atol=1e-9)
+    assert any("a signal a row, by its name under" in told for told in done.found)
+
+
+def test_a_state_that_stays_is_no_name_of_a_signal(tmp_path: Path) -> None:
+    rows = "\n".join(f"{0.01 * k:.2f},{'IDLE' if k < 50 else 'FLY'},{0.001 * k}" for k in range(100))
+    (tmp_path / "run.csv").write_text(f"t_s,state,psi_rad\n{rows}")
+    done = imported_here(tmp_path / "run.csv", ColumnMapping({"u_M_V": "0", "u_T_V": "0", "phi_rad": "0"}))
+    np.testing.assert_allclose(done.log.column("psi_rad"), 0.001 * np.arange(100))
