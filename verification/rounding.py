@@ -62,7 +62,7 @@ def _stated_slices(table: ControllerTable, count: int) -> str:
     if table.schedule is None:
         return ""
     symbol = table.loops[table.index(table.schedule.axis)].symbol
-    return f"{symbol.capitalize()} in {count} slices, "
+    return f"{symbol} in {count} slices, "
 
 
 def rounding_record(table: ControllerTable, bounds_V: Sequence[float], method: str) -> RoundingBound:

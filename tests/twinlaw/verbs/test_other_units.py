@@ -182,7 +182,7 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
     assert key in str(table)
 
 
-def test_a_law_is_scheduled_by_a_length(tmp_path: Path) -> None:
+def test_a_law_is_scheduled_by_a_length(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Truth: the range in metres that the plant's file asks for, in the table and as what the C clamps the carriage's place to."""
     plant, table = written("by_place", tmp_path), tmp_path / "controller.json"
     assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 0
@@ -192,6 +192,11 @@ def test_a_law_is_scheduled_by_a_length(tmp_path: Path) -> None:
     assert {len(powers) for powers in content["carriage"]["q_V_m"]} == {3}
     assert re.findall(r"LAW_Q_M.._M \((.+)f\)", (generated / "law.h").read_text()) == ["-0.100000001", "0.100000001"]
     assert "clamp(self->q_m, LAW_Q_MIN_M, LAW_Q_MAX_M)" in (generated / "law.c").read_text()
+    page = (tmp_path / "design.html").read_text()
+    told = ("Margins over q of the carriage", "Coefficients over q of the carriage", ">at q<")
+    assert [words for words in told if words not in page] == []
+    assert "coupl" not in page
+    assert "at q " in capsys.readouterr().out.splitlines()[0]
 
 
 def test_a_plant_with_positions_is_scheduled_by_these_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from design.analysis.migration import SlowestPole
 from design.report import AxisReport, DesignReport
-from records.text.units import said
+from records.text.units import said, unit_of
 from records.verification import at_own_schedule
 from twinlaw.pages.page import Row
 
@@ -26,8 +26,17 @@ _DESIGN_HEADING: Row = (
 
 def design_heading(report: DesignReport) -> Row:
     """The heading of `design_rows`."""
-    angle = report.angle if report.is_scheduled else ""
+    angle = (report.angle if _is_angle(report) else report.loop(report.angle).symbol) if report.is_scheduled else ""
     return tuple(word.format(arithmetic=report.arithmetic, angle=angle).rstrip() for word in _DESIGN_HEADING)
+
+
+def scheduled_over(report: DesignReport) -> str:
+    """What a scheduled law goes by, in words: an axis means its angle."""
+    return f"the {report.angle}" if _is_angle(report) else f"{report.loop(report.angle).symbol} of the {report.angle}"
+
+
+def _is_angle(report: DesignReport) -> bool:
+    return unit_of(report.scheduled_by) == "rad"
 
 
 def design_rows(report: DesignReport) -> list[Row]:

@@ -14,7 +14,7 @@ from records.text.units import shown, unit_of
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.plots import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, grid, row, stack
 from twinlaw.pages.quality import quality_section, quality_sentence
-from twinlaw.pages.run.design import design_heading, design_rows
+from twinlaw.pages.run.design import design_heading, design_rows, scheduled_over
 
 Array = NDArray[np.float64]
 FINE = 200  # angles at which a fit is drawn
@@ -79,15 +79,17 @@ def _margins(report: DesignReport) -> Section:
         ]
         return Panel(label, curves)
 
+    alone = len(report.axes) == 1
+    coupled = Curve(psi_deg, report.coupled_slowest_rad_s, report.axes[0].axis if alone else "all loops", GREY)
     panels = (
         panel("largest sensitivity Ms [-]", "sensitivity", 1.0),
         panel("phase margin [deg]", "phase_rad", 180.0 / math.pi),
         panel("delay margin [ms]", "delay_s", 1e3),
-        Panel("slowest pole, coupled [rad/s]", (Curve(psi_deg, report.coupled_slowest_rad_s, "all loops", GREY),)),
+        Panel(f"slowest pole{'' if alone else ', coupled'} [rad/s]", (coupled,)),
     )
     return Section(
-        f"Margins over the {report.angle}",
-        (f"{told} The last panel closes all loops on the whole plant, cross-coupling included.",),
+        f"Margins over {scheduled_over(report)}",
+        (told if alone else f"{told} The last panel closes all loops on the whole plant, cross-coupling included.",),
         (table,),
         (stack(panels, _schedule_label(report), panel_height_in=1.7),),
     )
@@ -103,7 +105,7 @@ def _coefficients(report: DesignReport) -> Section:
         return _constants(report)
     worst = [f"{_small(report.loop(axis.axis), axis.feedforward_error_V)} ({axis.axis})" for axis in report.axes]
     return Section(
-        f"Coefficients over the {report.angle}",
+        f"Coefficients over {scheduled_over(report)}",
         (
             f"The law's coefficients in powers of delta = 1 - z^-1, and the input of the operating point: dots as designed at each of "
             f"{len(report.points_rad)} operating points, lines as fitted by one polynomial each. p_0 = P(1) is 0 everywhere, as the law "
