@@ -10,7 +10,7 @@ import numpy as np
 
 from recordings.formats.clocks import is_time_name
 from recordings.signals import Contents, Signal
-from recordings.units import known, suffix_of, unit_of_suffix
+from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
 from records.log import LogColumns
 from records.text.units import unit_of, unit_suffix
 
@@ -57,7 +57,12 @@ def _most_alike(needed: Sequence[str], free: Mapping[str, Signal]) -> dict[str, 
         fitting = [name for name, signal in free.items() if name not in chosen.values() and _fits(column, name, signal)]
         if column not in chosen and len(fitting) == 1:
             chosen[column] = fitting[0]
-    return chosen
+    return {**{column: f"{name}*FACTOR" for column in needed for name in _in_another_unit(column, free)[:1]}, **chosen}
+
+
+def _in_another_unit(column: str, free: Mapping[str, Signal]) -> list[str]:
+    """The signals of the column's name whose unit has no factor to its own, per cent for volts say: a person knows the factor."""
+    return [name for name in free if suffix_of(name) and without_suffix(name) == without_suffix(column)]
 
 
 def _varies(signal: Signal) -> bool:

@@ -144,6 +144,14 @@ def test_an_angle_within_one_turn_and_counts_of_16_bits_are_counted_on_and_that_
     assert any("unwrap(...) around it" in told for told in typed.found)
 
 
+def test_a_signal_of_the_name_in_another_quantity_is_proposed_with_a_factor_to_be_typed() -> None:
+    t_s = 0.01 * np.arange(50)
+    names = ("u_M_pct", "u_T_V", "psi_deg", "phi_deg")
+    signals = {"t_s": Signal(t_s), **{name: Signal(t_s, clock="t_s") for name in names}}
+    with pytest.raises(BadInput, match=r"--column 'u_M_V=u_M_pct\*FACTOR'$"):
+        log_of_contents(Contents(signals), "rig.csv", ColumnMapping(), columns_of("ce150"))
+
+
 def test_a_signal_is_shown_with_what_the_file_calls_it_where_that_is_another_name() -> None:
     t_s = 0.01 * np.arange(50)
     signals = {

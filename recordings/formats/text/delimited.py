@@ -34,6 +34,7 @@ from records.errors import BadInput
 Array = NDArray[np.float64]
 
 OVERLOAD = 9.9e37  # beyond the range or no number, as instruments write it: SCPI-99, volume 1, 7.2.1.4 and 7.2.1.5
+LONGEST_CELL = 6  # lines: a quote that is open for longer was never to be closed, as the inches of a name
 ACROSS = 10  # times as many columns as rows: signals that lie in rows
 MOST_TEXT = (
     0.5  # of a column's filled cells that are no numbers: beyond it the column is a text, not a signal with faults
@@ -88,6 +89,7 @@ def _sidecar(path: Path) -> dict[str, str]:
 def _lines(text: str, skip: int) -> tuple[list[Line], list[Line], str | None]:
     """Lines behind those to skip, comments apart; and the separator that a spreadsheet's first line `sep=;` states."""
     numbered = [Line(index, line) for index, line in enumerate(re.split(r"\r\n|\r|\n", text), start=1) if index > skip]
+    numbered = _with_whole_cells(numbered) if '"' in text else numbered
     stated = re.fullmatch(r'"?sep=(.)"?', numbered[0].text.strip()) if numbered else None
     filled = [line for line in numbered[1 if stated else 0 :] if line.text.strip()]
     comments = [line for line in filled if line.text.lstrip().startswith(COMMENTS)]
@@ -96,6 +98,21 @@ def _lines(text: str, skip: int) -> tuple[list[Line], list[Line], str | None]:
         comments,
         stated[1] if stated else None,
     )
+
+
+def _with_whole_cells(lines: Sequence[Line]) -> list[Line]:
+    """The lines with those joined between which quotes are open, as a spreadsheet writes a cell of several lines."""
+    found: list[Line] = []
+    place = 0
+    while place < len(lines):
+        end = place + 1
+        while end - place < LONGEST_CELL and sum(line.text.count('"') for line in lines[place:end]) % 2:
+            end += 1
+        whole = end - place < LONGEST_CELL
+        joined = lines[place : end if whole else place + 1]
+        found.append(replace(lines[place], text=" ".join(line.text for line in joined)))
+        place += len(joined)
+    return found
 
 
 def _comments(comments: Sequence[Line]) -> tuple[str, ...]:
