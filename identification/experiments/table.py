@@ -78,3 +78,8 @@ def perform(kind: str, truth: BoundPlant, seed: int) -> Experiment:
     """The experiment on a rig with the true parameters `truth`; its chance depends on the seed and the experiment's number alone."""
     entry = kinds_of(truth.model.name)[kind]
     return entry.perform(truth, np.random.default_rng([seed, entry.number]))
+
+
+def aid_unit(name: str) -> str:
+    """The unit of what data need and no plant file has; an input's offset bears that of its input, "offset.u_T_V"."""
+    return name.rpartition("_")[2] if name.startswith("offset.") and "_" in name else AID_UNITS.get(name, "")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from identification.experiments.table import aid_unit
 from identification.fit.belief import stated
 from identification.fit.normal_equations import at
 from identification.fit.problem import Prior, Problem
@@ -45,7 +46,13 @@ def leaning(bound: BoundPlant, fit: Estimate) -> tuple[Leaning, ...]:
     each, units = np.abs(moves) * spread.sd, numbers(bound.plant)
     rows = zip(fit.belief.names, by.tolist(), fit.belief.sd.tolist(), each, strict=True)
     return tuple(
-        Leaning(name, units[name][2], off, sd, tuple(held[place] for place in np.argsort(-row) if row[place] > sd))
+        Leaning(
+            name,
+            units[name][2] if name in units else aid_unit(name),
+            off,
+            sd,
+            tuple(held[place] for place in np.argsort(-row) if row[place] > sd),
+        )
         for name, off, sd, row in rows
         if off > sd
     )

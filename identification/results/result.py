@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from identification.experiments.table import AID_UNITS
+from identification.experiments.table import aid_unit
 from identification.fit.belief import Belief
 from identification.results.notes import bound_warning, relative, stage_notes
 from identification.results.plant_file import numbers, with_belief, with_values
@@ -133,11 +133,6 @@ def _begun(stages: Sequence[tuple[str, Estimate]]) -> dict[str, float]:
     return {name: value for _, stage in reversed(stages) for name, value in stage.start.items()}
 
 
-def _aid_unit(name: str) -> str:
-    """An input's offset bears the unit of its input, "offset.u_T_V"."""
-    return name.rpartition("_")[2] if name.startswith("offset.") and "_" in name else AID_UNITS.get(name, "")
-
-
 def signs_of(model: Model) -> dict[str, str]:
     """What the model demands of each coefficient's sign: "positive", "non-negative" or "any"."""
     return {str(symbol): spec.sign for spec in model.parameters for symbol in spec.symbols}
@@ -171,7 +166,7 @@ def _estimated(
 def _aid(name: str, start: float, belief: Belief, factor: float) -> Estimated:
     """What the plant file does not have."""
     value, sd = _told(name, belief)
-    return Estimated(name, _aid_unit(name), start, value, sd, *interval(value, factor * sd), True, value, sd)
+    return Estimated(name, aid_unit(name), start, value, sd, *interval(value, factor * sd), True, value, sd)
 
 
 def _told(name: str, belief: Belief) -> tuple[float, float]:
