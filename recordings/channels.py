@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from recordings.signals import counted
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
 
@@ -126,7 +125,9 @@ def _instants(clocks: list[Array], where: str, span: Span, channels: Mapping[str
             )
             got = f"{t_s.size} rows"
             raise BadInput("part of a record", "--from, --until", got, f"two or more{ends}", "choose other times")
-        raise BadInput("outputs", where, counted(t_s.size, "samples"), "at least 2", "record for longer")
+        raise BadInput(
+            "outputs", where, f"{t_s.size} sample{'' if t_s.size == 1 else 's'}", "at least 2", "record for longer"
+        )
     return t_s
 
 
