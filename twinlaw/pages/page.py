@@ -45,6 +45,11 @@ class Page:
     sections: Sequence[Section]
 
 
+def with_units(cell: str) -> str:
+    """A cell in which no line ends between a number and what follows it."""
+    return re.sub(r"(?<=\d) (?=[A-Za-z%])", "\u00a0", cell)
+
+
 def parts(sentence: str) -> list[str]:
     """A sentence in parts, every second of which is an option and is broken into no lines; nor is one before a per cent sign."""
     return re.split(r"(--[a-z][a-z-]*)", sentence.replace(" %", "\u00a0%"))
@@ -61,5 +66,6 @@ def page_text(page: Page) -> str:
     )
     environment.filters["unsigned_zeros"] = unsigned_zeros
     environment.filters["parts"] = parts
+    environment.filters["with_units"] = with_units
     facts = {name: getattr(page, name) for name in Page.__dataclass_fields__}
     return environment.get_template("report.html.j2").render(facts)
