@@ -89,12 +89,19 @@ def _by_stretches(
         return first, True
     behind = [_behind(part(log, rows), table) for rows in parts[1:]]
     end_s, unit = float(log.t_s[parts[0].stop - 1]), units_of(loop.input for loop in table.loops)
-    sentence = f"rows or readings are missing behind {end_s:.6g} s; up to there the firmware is cleared"
+    sentence = f"{_break(log, parts, begins)} behind {end_s:.6g} s; up to there the firmware is cleared"
     sentence += "".join(f", {_in_words(entry, unit)}" for entry in behind)
     if first.sentence is not None:
         sentence = f"{first.sentence}; {sentence}"
     followed = all(entry.since_s is not None for entry in behind)
     return replace(first, bit_exact=False, cause=MISSING_ROWS, sentence=sentence), followed
+
+
+def _break(log: RunLog, parts: Sequence[slice], begins: Rows | None) -> str:
+    """What ends the first stretch."""
+    row = parts[1].start
+    cut = begins is not None and bool(begins[row]) and row == parts[0].stop and not gaps(log.t_s)[row]
+    return "another recording begins" if cut else "rows or readings are missing"
 
 
 def _in_words(entry: _Behind, unit: str) -> str:

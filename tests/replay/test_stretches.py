@@ -85,7 +85,9 @@ def test_a_second_recording_in_the_file_is_replayed_from_rest() -> None:
         extra={name: np.tile(values, 2) for name, values in log.extra.items()},
     )
     begins = np.arange(len(twice.t_s)) == len(log.t_s)
-    assert "it agrees to the bit" in (replay_stretches(twice, TABLE, begins=begins).sentence or "")
+    sentence = replay_stretches(twice, TABLE, begins=begins).sentence or ""
+    assert "it agrees to the bit" in sentence
+    assert sentence.startswith("another recording begins behind")
 
 
 def test_a_law_that_flew_in_double_precision_by_its_log_is_run_again_in_it() -> None:
