@@ -12,6 +12,8 @@ COUNTED_TO = 12
 OF_THE_CODE: dict[str, dict[str, str]] = {
     "docs/diagnosis.md": {},
     "docs/log-check.md": {"161700": "triples of a hundred"},
+    "docs/quality.md": {},
+    "docs/firmware.md": {"32": "bits of the line's checksum, and of a word of either arithmetic"},
     "docs/hardware.md": {
         "3.3": "V, the supply of the chip's pins: STM32G071RB, data sheet",
         "4.7": "kOhm, of an open collector's pull-up: what the field takes",
