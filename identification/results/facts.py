@@ -45,7 +45,7 @@ def _stage_facts(title: str, stage: Estimate) -> dict[str, Any]:
 
 
 def _search_facts(found: Searched) -> dict[str, Any]:
-    """What one method found over the whole range; `error` is sum |e| with angles in degrees."""
+    """What one method found over the whole range; `error` is sum |e|, angles in degrees, other readings in tenths of their spread."""
     return {
         "method": found.method,
         "values": dict(zip(found.names, found.values.tolist(), strict=True)),

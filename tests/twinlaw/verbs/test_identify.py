@@ -1,6 +1,7 @@
 """The verbs `experiments` and `identify`: files in, files out, one line for what is wrong."""
 
 import json
+import re
 import shutil
 from dataclasses import replace
 from functools import partial
@@ -114,6 +115,8 @@ def test_a_search_over_experiments_ends_with_the_truth_beside_it(method, folder,
     page = (tmp_path / "report.html").read_text()
     assert "Psi_m" in page
     assert "readings and residuals" in page
+    assert ('<th scope="col">bits</th>' in page) == (method == "genetic")
+    assert re.search(rf'>{method}</td><td class="whole">[\d.e+-]+</td>', page)  # a torque's sum is not in degrees
 
 
 @pytest.fixture(scope="module")

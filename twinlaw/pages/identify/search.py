@@ -8,12 +8,13 @@ import numpy as np
 from identification.results.result import Estimated
 from identification.search.methods import Searched
 from identification.stages.estimate import Estimate
+from records.text.units import unit_of
 from sim.bind import BoundPlant
 from twinlaw.pages.identify.truth import off, told, true_values, z
 from twinlaw.pages.page import Section, Table
 from twinlaw.pages.plots import COLOURS, Curve, Panel, row
 
-HEADING = ("data", "parameter", "unit", "range", "bits")
+HEADING = ("data", "parameter", "unit", "range")
 Stages = Sequence[tuple[str, Estimate]]
 
 
@@ -32,9 +33,10 @@ def _side_by_side(stages: Stages, truth: Mapping[str, float], estimates: Sequenc
     compared = [cell for method in methods for cell in ((method, "error", "z") if truth else (method,))]
     known = ("truth",) if truth else ()
     by_name = {entry.name: entry for entry in estimates}
-    rows = [line for title, stage in stages for line in _rows(title, stage, truth, by_name)]
+    coded = ("bits",) if any(stage.searched[0].bits for _, stage in stages) else ()
+    rows = [line for title, stage in stages for line in _rows(title, stage, truth, by_name, bool(coded))]
     costs = [
-        (_short(title), found.method, f"{found.error:.4g}", f"{found.cpu_s:.2f} s")
+        (_short(title), found.method, f"{found.error:.4g} {_unit(stage)}".rstrip(), f"{found.cpu_s:.2f} s")
         for title, stage in stages
         for found in stage.searched
     ]
@@ -42,14 +44,15 @@ def _side_by_side(stages: Stages, truth: Mapping[str, float], estimates: Sequenc
         "What each method found by itself within the same ranges; gradient is the compiled least squares, from the best of 50 "
         "points in them. "
         "The estimates above start from the first of them.",
-        "z counts in the standard deviations of those. Below: what is left, sum |e| with angles in degrees, and CPU time.",
+        "z counts in the standard deviations of those. Below: what is left, sum |e| with angles in degrees and other readings in "
+        "tenths of their spread, and CPU time.",
     )
-    tables = (Table(rows, (*HEADING, *known, *compared)), Table(costs, ("data", "method", "sum |e| [deg]", "CPU")))
+    tables = (Table(rows, (*HEADING, *coded, *known, *compared)), Table(costs, ("data", "method", "sum |e|", "CPU")))
     return Section("Search over the whole range", sentences, tables)
 
 
 def _rows(
-    title: str, stage: Estimate, truth: Mapping[str, float], estimates: Mapping[str, Estimated]
+    title: str, stage: Estimate, truth: Mapping[str, float], estimates: Mapping[str, Estimated], coded: bool
 ) -> list[tuple[str, ...]]:
     first, rows = stage.searched[0], []
     for place, name in enumerate(first.names):
@@ -60,7 +63,7 @@ def _rows(
             name,
             unit,
             f"{first.lower[place]:.4g} .. {first.upper[place]:.4g}",
-            bits,
+            *([bits] if coded else []),
         ]
         known = truth.get(name)
         cells += [told(known)] if truth else []
@@ -70,6 +73,12 @@ def _rows(
             cells += [off(value, known), z(value, sd, known)] if truth else []
         rows.append(tuple(cells))
     return rows
+
+
+def _unit(stage: Estimate) -> str:
+    """Of a sum over all channels: none where not all of them are angles."""
+    channels = (channel for run in stage.runs for channel in run.channels)
+    return "deg" if all(unit_of(channel) == "rad" for channel in channels) else ""
 
 
 def _short(title: str) -> str:
