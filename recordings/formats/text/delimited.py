@@ -34,7 +34,7 @@ from records.errors import BadInput
 Array = NDArray[np.float64]
 
 OVERLOAD = 9.9e37  # beyond the range or no number, as instruments write it: SCPI-99, volume 1, 7.2.1.4 and 7.2.1.5
-LONGEST_CELL = 6  # lines: a quote that is open for longer was never to be closed, as the inches of a name
+LONGEST_RECORD = 64  # lines: a quote that is open for longer was never to be closed
 ACROSS = 10  # times as many columns as rows: signals that lie in rows
 MOST_TEXT = (
     0.5  # of a column's filled cells that are no numbers: beyond it the column is a text, not a signal with faults
@@ -105,14 +105,19 @@ def _with_whole_cells(lines: Sequence[Line]) -> list[Line]:
     found: list[Line] = []
     place = 0
     while place < len(lines):
-        end = place + 1
-        while end - place < LONGEST_CELL and sum(line.text.count('"') for line in lines[place:end]) % 2:
-            end += 1
-        whole = end - place < LONGEST_CELL
-        joined = lines[place : end if whole else place + 1]
-        found.append(replace(lines[place], text=" ".join(line.text for line in joined)))
-        place += len(joined)
+        text, end = lines[place].text, place + 1
+        while _is_open(text) and end < min(len(lines), place + LONGEST_RECORD):
+            text, end = f"{text} {lines[end].text}", end + 1
+        if _is_open(text):
+            text, end = lines[place].text, place + 1
+        found.append(replace(lines[place], text=text))
+        place = end
     return found
+
+
+def _is_open(text: str) -> bool:
+    """Whether a cell that begins with a quote has no end yet; a quote within a cell stands for inches."""
+    return text.count('"') % 2 == 1 and re.search(r'(?:^|[,;\t|])\s*"[^"]*$', text) is not None
 
 
 def _comments(comments: Sequence[Line]) -> tuple[str, ...]:

@@ -43,7 +43,7 @@ LAYOUTS = {
     "comments between": (_rows(",", [NAMES]).encode() + b"% armed\n" + _rows(",").encode() + b"# end\n", "2 lines of comment"),
     "preamble": (b"Rig;7\nDate;2024-05-22\nRate;100;;\n\n" + _rows(";", [NAMES, *TEXTS]).encode(), "before 5 are passed over"),
     "units below the names": (_rows(",", [NAMES, ("s", "V", "m"), *TEXTS]).encode(), "units in line 2: s,V,m"),
-    "cells of several lines": (b'"t_s\n[s]","u_V\n[V]","q_m"\r\n' + _rows(",").encode(), "header in line 1: "),
+    "cells of several lines": (b'"t_s\n[s]","u_V\n[V]","q_m\n\n\n[m]"\r\n' + _rows(",").encode(), "header in line 1: "),
     "inches in a name": (_rows(",", [(*NAMES, '4" wheel'), *((*row, "1") for row in TEXTS)]).encode(), 'wheel'),
     "separators behind": (_rows(",", [(*NAMES, ""), *((*row, "") for row in TEXTS)]).encode(), "comma"),
     "an index before": (_rows(",", [("", *NAMES), *((str(k), *row) for k, row in enumerate(TEXTS))]).encode(), "line 1: ,t_s,u_V"),
