@@ -145,7 +145,8 @@ def _pick(name: str, reference: Reference, column_name: str, of: Source) -> Arra
 
 
 def _unknown(text: str, column_name: str, of: Source) -> BadInput:
-    there = listed(list(of.signals))
+    found = "; ".join(of.contents.found)[:300]
+    there = f"{listed(list(of.signals))}{f' ({found})' if found else ''}"
     for name, told in of.contents.unread.items():
         if name == text or name.split(".")[-1] == text:
             return BadInput(f"signal {name!r}", of.where, told, "numbers", "export it as numbers")

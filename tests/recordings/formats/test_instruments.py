@@ -135,6 +135,13 @@ def test_a_part_of_a_name_is_told_with_the_whole(tmp_path: Path) -> None:
         imported_here(tmp_path / "log.csv", _mapping(tmp_path, u_V="input"))
 
 
+def test_a_name_that_is_not_there_is_told_with_the_header_that_was_taken(tmp_path: Path) -> None:
+    heads = "name,XAxis,Model/u,Model/y\npath,a,b,c\n"
+    (tmp_path / "log.csv").write_text(heads + _table(",", U_V, TIMES_S, U_V, Y_MV))
+    with pytest.raises(BadInput, match=r"header in line 2: path,a,b,c; lines before 2 are passed over"):
+        imported_here(tmp_path / "log.csv", _mapping(tmp_path, u_V="Model/u", y_V="c"))
+
+
 def test_times_of_too_few_digits_are_refused_with_the_step_that_their_ends_give(tmp_path: Path) -> None:
     """Truth: 60 rows from 1 to 1.236 s; two digits behind the point make them the same in pairs and threes."""
     rows = "".join(f"{1.0 + time_s - FIRST_S:.2f},{u},{y}\n" for time_s, u, y in zip(TIMES_S, U_V, Y_MV, strict=True))
