@@ -1,6 +1,6 @@
 """The rest points of a plant: constant inputs and states that hold its axes at given positions."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -129,23 +129,21 @@ def _filled(bound: BoundPlant, wanted: Mapping[int, float]) -> Iterator[Array]:
 
 
 def _solve_measured(bound: BoundPlant, wanted: Mapping[int, float], x: Array, u: Array) -> tuple[Array, Array] | None:
-    """Newton's method for no rate of any state and the wanted outputs; None where it finds nothing."""
+    """No rate of any state and the wanted outputs; None where that is not found."""
     model, equations = bound.model, reference(bound.model)
     places, values = list(wanted), np.array(list(wanted.values()))
-    for _ in range(MAX_ITERATIONS):
-        at = (0.0, x, u, bound.p, np.zeros(len(model.axes)))
-        with np.errstate(all="ignore"):
-            wrong = np.concatenate([equations.rates(*at), equations.outputs(*at)[places] - values])
-            slopes = np.block(
-                [[equations.A(*at), equations.B(*at)], [equations.C(*at)[places], np.zeros((len(places), len(u)))]]
-            )
-        if not (np.all(np.isfinite(wrong)) and np.all(np.isfinite(slopes))):
-            return None
-        step = np.asarray(np.linalg.lstsq(slopes, wrong, rcond=None)[0])
-        x, u = x - step[: len(x)], u - step[len(x) :]
-        if np.all(np.abs(step) <= STEP_TOLERANCE * (1.0 + np.abs(np.concatenate([x, u])))):
-            return (x, u) if np.max(np.abs(wrong)) <= RATE_TOLERANCE * max(1.0, np.max(np.abs(values))) else None
-    return None
+    still, states = np.zeros(len(model.axes)), len(x)
+
+    def at(unknowns: Array) -> tuple[Array, Array]:
+        here = (0.0, unknowns[:states], unknowns[states:], bound.p, still)
+        by_input = np.zeros((len(places), len(u)))
+        slopes = np.block([[equations.A(*here), equations.B(*here)], [equations.C(*here)[places], by_input]])
+        return np.concatenate([equations.rates(*here), equations.outputs(*here)[places] - values]), slopes
+
+    found = _newton(np.concatenate([x, u]), at, _least_step)
+    if found is None or not np.max(np.abs(found[1])) <= RATE_TOLERANCE * max(1.0, np.max(np.abs(values))):
+        return None
+    return found[0][:states], found[0][states:]
 
 
 def _begin(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ...]) -> tuple[Array, Array]:
@@ -160,7 +158,7 @@ def _begin(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ..
 
 
 def _solve(bound: BoundPlant, x: Array, u: Array) -> tuple[Array, Array] | None:
-    """Newton's method from rest at the middle of the inputs' range: thrust and damping are convex, so it needs no damping.
+    """The rest of states and inputs from the middle of the inputs' range: thrust and damping are convex, so Newton needs no damping.
 
     A state whose rate is 0 wherever the axes rest (a bent cable) stays where it starts. None where there is no rest point.
     """
@@ -170,17 +168,41 @@ def _solve(bound: BoundPlant, x: Array, u: Array) -> tuple[Array, Array] | None:
     free = [index for index, state in enumerate(model.states) if state not in held]
     rows = [*free, *(model.states.index(axis.velocity) for axis in arms)]
     equations, signs = reference(model), np.zeros(len(model.axes))
+
+    def rest(unknowns: Array) -> tuple[Array, Array]:
+        states = x.copy()
+        states[free] = unknowns[: len(free)]
+        return states, unknowns[len(free) :]
+
+    def at(unknowns: Array) -> tuple[Array, Array]:
+        here = (0.0, *rest(unknowns), bound.p, signs)
+        slopes = np.hstack([equations.A(*here)[np.ix_(rows, free)], equations.B(*here)[rows]])
+        return equations.rates(*here)[rows], slopes
+
+    found = _newton(np.concatenate([x[free], u]), at, _newton_step)
+    return None if found is None or not np.max(np.abs(found[1])) <= RATE_TOLERANCE else rest(found[0])
+
+
+def _newton(
+    start: Array, at: Callable[[Array], tuple[Array, Array]], step_of: Callable[[Array, Array], Array]
+) -> tuple[Array, Array] | None:
+    """The unknowns (n,) at which `at` gives 0 and slopes (m,), (m, n), and what was left (m,) a step before; None where none are found.
+
+    A step that leads where the equations have no value, the root of a level below 0, is taken by half, and by half again.
+    """
+    unknowns, last, step = start, start, np.zeros(len(start))
     for _ in range(MAX_ITERATIONS):
-        at = (0.0, x, u, bound.p, signs)
         with np.errstate(all="ignore"):
-            rates = equations.rates(*at)[rows]
-            slopes = np.hstack([equations.A(*at)[np.ix_(rows, free)], equations.B(*at)[rows]])
-        if not (np.all(np.isfinite(rates)) and np.all(np.isfinite(slopes))):
+            wrong, slopes = at(unknowns)
+        if np.all(np.isfinite(wrong)) and np.all(np.isfinite(slopes)):
+            last, step = unknowns, step_of(slopes, wrong)
+        elif np.any(step):
+            step = 0.5 * step
+        else:
             return None
-        step = _newton_step(slopes, rates)
-        x[free], u = x[free] - step[: len(free)], u - step[len(free) :]
-        if np.all(np.abs(step) <= STEP_TOLERANCE * (1.0 + np.abs(np.concatenate([x[free], u])))):
-            return (x, u) if np.max(np.abs(rates)) <= RATE_TOLERANCE else None
+        unknowns = last - step
+        if np.all(np.abs(step) <= STEP_TOLERANCE * (1.0 + np.abs(unknowns))):
+            return unknowns, wrong
     return None
 
 
@@ -188,7 +210,11 @@ def _newton_step(jacobian: Array, rates: Array) -> Array:
     try:
         return np.asarray(np.linalg.solve(jacobian, rates))
     except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.lstsq(jacobian, rates, rcond=None)[0])
+        return _least_step(jacobian, rates)
+
+
+def _least_step(jacobian: Array, wrong: Array) -> Array:
+    return np.asarray(np.linalg.lstsq(jacobian, wrong, rcond=None)[0])
 
 
 def _check_stops(bound: BoundPlant, axis: Axis, position: float) -> None:

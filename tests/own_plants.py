@@ -96,6 +96,34 @@ return Model(
 )
 """,
 )
+# Four of them, each pump filling one below and the other's above; the levels' roots as anybody writes them, without a value below 0.
+FOUR_TANKS = OwnPlant(
+    {
+        "A": (3e-3, 1e-4, "m^2"),
+        "a": (6.4e-6, 1e-7, "m^2"),
+        "k": (3.3e-6, 1e-7, "m^3 s^-1 V^-1"),
+        "share": (0.65, 0.01, "1"),
+        "g": (9.81, 0.0, "m s^-2"),
+    },
+    {"h1_m": 1e-4, "h2_m": 1e-4},
+    """
+h1, h2, h3, h4, u1, u2 = (symbol(name) for name in ("h1_m", "h2_m", "h3_m", "h4_m", "u1_V", "u2_V"))
+out1, out2, out3, out4 = (p["a"] * sympy.sqrt(2 * p["g"] * level) for level in (h1, h2, h3, h4))
+below, above = p["share"] * p["k"], (1 - p["share"]) * p["k"]
+return Model(
+    name="NAME", states=(h1, h2, h3, h4), inputs=(u1, u2), outputs={"h1_m": h1, "h2_m": h2}, parameters=PARAMETERS,
+    rates={
+        h1: (out3 - out1 + below * u1) / p["A"], h2: (out4 - out2 + below * u2) / p["A"],
+        h3: (above * u2 - out3) / p["A"], h4: (above * u1 - out4) / p["A"],
+    },
+    axes=(), input_limits={u1: (0, 10), u2: (0, 10)},
+    places=Places(
+        inputs={"left_pump": InputPlace(u1, "V", 5.0), "right_pump": InputPlace(u2, "V", 5.0)},
+        sensors={"left_gauge": SensorPlace("h1_m", "m", 0.2), "right_gauge": SensorPlace("h2_m", "m", 0.2)},
+    ),
+)
+""",
+)
 # A body that a resistor heats.
 HEATER = OwnPlant(
     {"C": (20.0, 2.0, "J K^-1"), "G": (0.8, 0.08, "W K^-1")},
@@ -276,6 +304,64 @@ HANGING = OwnPlant(
         'SensorPlace("theta_rad", "rad")}',
         'SensorPlace("theta_rad", "rad"), "delta_sensor": SensorPlace("delta_rad", "rad")}',
     ),
+)
+
+# A ball of steel under a coil, its gap counted downwards from a place 10 mm below the coil.
+MAGNET = OwnPlant(
+    {
+        "m": (0.068, 0.001, "kg"),
+        "C": (6.5e-5, 1e-6, "N m^2 A^-2"),
+        "z0": (0.01, 1e-4, "m"),
+        "R": (10.0, 0.1, "V A^-1"),
+        "L": (0.04, 0.001, "V s A^-1"),
+        "g": (9.81, 0.0, "m s^-2"),
+    },
+    {"gap_m": 1e-5},
+    """
+gap, v, i, u = (symbol(name) for name in ("gap_m", "v_m_s", "i_A", "u_V"))
+return Model(
+    name="NAME", states=(gap, v, i), inputs=(u,), outputs={"gap_m": gap}, parameters=PARAMETERS,
+    rates={gap: v, i: (u - p["R"] * i) / p["L"]},
+    axes=(Axis("ball", gap, v, p["m"], p["m"] * p["g"] - p["C"] * i**2 / (p["z0"] + gap) ** 2, 0, None, None),),
+    input_limits={u: (0, 24)},
+    places=Places(
+        inputs={"coil": InputPlace(u, "V", 20.0)},
+        axes={"ball": AxisPlace("gap_m", "N", 0.5, length_unit="m")},
+        sensors={"light": SensorPlace("gap_m", "m", 0.01)},
+    ),
+)
+""",
+)
+
+# A pole that stands on a cart: the cart's place, the pole's angle, and the place of the pole's tip.
+CART_POLE = OwnPlant(
+    {
+        "M": (0.6, 0.01, "kg"),
+        "m": (0.2, 0.01, "kg"),
+        "l": (0.3, 0.01, "m"),
+        "b": (0.1, 0.05, "N s m^-1"),
+        "k": (1.5, 0.1, "N V^-1"),
+        "g": (9.81, 0.0, "m s^-2"),
+    },
+    {"x_m": 1e-4, "theta_rad": 1.5e-3, "tip_m": 1e-4},
+    """
+x, v, theta, omega, u = (symbol(name) for name in ("x_m", "v_m_s", "theta_rad", "omega_rad_s", "u_V"))
+s, c = sympy.sin(theta), sympy.cos(theta)
+force = p["k"] * u - p["b"] * v + p["m"] * p["l"] * omega**2 * s - p["m"] * p["g"] * s * c
+push = force / (p["M"] + p["m"] * s**2)
+return Model(
+    name="NAME", states=(x, v, theta, omega), inputs=(u,),
+    outputs={"x_m": x, "theta_rad": theta, "tip_m": x + p["l"] * s}, parameters=PARAMETERS,
+    rates={x: v, v: push, theta: omega, omega: (p["g"] * s - push * c) / p["l"]}, axes=(), input_limits={u: (-12, 12)},
+    places=Places(
+        inputs={"motor": InputPlace(u, "V", 10.0)},
+        sensors={
+            "x_sensor": SensorPlace("x_m", "m"), "theta_sensor": SensorPlace("theta_rad", "rad"),
+            "camera": SensorPlace("tip_m", "m"),
+        },
+    ),
+)
+""",
 )
 
 WORKING: Mapping[str, OwnPlant] = {

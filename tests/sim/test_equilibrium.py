@@ -8,7 +8,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.equilibrium import equilibrium, rest_with
 from sim.kernel.reference import reference
-from tests.own_plants import HANGING, HEATER, TANKS
+from tests.own_plants import FOUR_TANKS, HANGING, HEATER, TANKS
 
 U_M0_V = {
     -45: 4.653,
@@ -82,6 +82,15 @@ def test_a_plant_without_positions_rests_where_what_it_measures_is_wanted(tmp_pa
     np.testing.assert_allclose(point.u0, [1e-4 * np.sqrt(2 * 9.81 * 0.4) / 5e-5], rtol=1e-9)
     with pytest.raises(BadInput, match=r"at 4 m: input u_V.*0 to 12 V"):
         rest_with(bound, [0], [4.0])
+
+
+def test_levels_whose_roots_have_no_value_below_0_come_to_rest(tmp_path):
+    """Truth by hand, all alike: each pump's flow leaves below, k u = a sqrt(2 g h), and its share above as much of that. To 1e-9."""
+    bound = bind(load_plant(FOUR_TANKS.write(tmp_path, "four_tanks")))
+    point = rest_with(bound, [0, 1], [0.12, 0.12])
+    above_m = 0.35**2 * 0.12
+    np.testing.assert_allclose(point.x0, [0.12, 0.12, above_m, above_m], rtol=1e-9)
+    np.testing.assert_allclose(point.u0, [6.4e-6 * np.sqrt(2 * 9.81 * 0.12) / 3.3e-6] * 2, rtol=1e-9)
 
 
 def test_a_plant_without_positions_rests_also_with_an_effect_that_is_flat_elsewhere(tmp_path):
