@@ -29,7 +29,7 @@ Keys in _rad and _V are so for an angle and a voltage; for another loop they end
 [design.margins]                     a table that falls below them anywhere in the range is refused
 max_sensitivity = 6.0
 min_phase_margin_rad = 0.175
-min_delay_margin_s = 0.02
+min_delay_margin_s = 0.02            two samples where these are shorter
 min_relative_gain = 0.5
 
 [design.tuned]                       what other controllers than this leave open: controllers/equations/tuned.py
@@ -60,13 +60,16 @@ DEFAULTS: Mapping[str, float] = {
 UNSCHEDULED: Mapping[str, float] = {"operating_points": 1, "coefficient_degree": 0, "feedforward_degree": 0}
 
 # The limits refuse tables that do not fly, not tables that fly badly: taste in margins belongs to the plant file.
-# Six times the sensitivity or 10 deg leave no room for the parameters' spread; two samples cover a serial link's delay.
+# Six times the sensitivity or 10 deg leave no room for the parameters' spread.
 MARGIN_DEFAULTS: Mapping[str, float] = {
     "max_sensitivity": 6.0,
     "min_phase_margin_rad": 0.175,
-    "min_delay_margin_s": 0.02,
     "min_relative_gain": LEAST_RELATIVE_GAIN,
 }
+
+# The least delay margin: two samples, [samples], cover a serial link's delay, which is never as long as 20 ms, [s]. A rig that needs 1 kHz
+# stands no 20 ms: a ball under a magnet of 45 rad/s falls by e in that time.
+DELAY_MARGIN_SAMPLES, DELAY_MARGIN_S = 2, 0.02
 
 
 def read_settings(bound: BoundPlant) -> DesignSettings:
@@ -81,15 +84,16 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
     schedule = None if scheduling is None else read_schedule(bound, section, scheduling, where)
     counts = DEFAULTS if schedule else {**DEFAULTS, **UNSCHEDULED}
     coefficient_degree = count(section, "coefficient_degree", where, counts)
+    sample_period_s = checks.positive(entry(section, "sample_period_s", DEFAULTS), f"{where}.sample_period_s")
     settings = DesignSettings(
-        sample_period_s=checks.positive(entry(section, "sample_period_s", DEFAULTS), f"{where}.sample_period_s"),
+        sample_period_s=sample_period_s,
         schedule=schedule,
         operating_points=count(section, "operating_points", where, counts),
         coefficient_degree=coefficient_degree,
         recursion_degree=count(section, "recursion_degree", where, {"recursion_degree": coefficient_degree}),
         feedforward_degree=count(section, "feedforward_degree", where, counts),
         axes=tuple(read_axis(bound, section, loop, where, schedule) for loop in loops),
-        margins=_margins(section, f"{where}.margins"),
+        margins=_margins(section, sample_period_s, f"{where}.margins"),
         loops=loops,
     )
     check_period(settings, where)
@@ -99,10 +103,11 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
     return settings
 
 
-def _margins(design: Mapping[str, Any], where: str) -> MarginLimits:
+def _margins(design: Mapping[str, Any], sample_period_s: float, where: str) -> MarginLimits:
     section = checks.table(design.get("margins", {}), where)
-    checks.keys(section, where, (), tuple(MARGIN_DEFAULTS))
-    values = {key: checks.number(entry(section, key, MARGIN_DEFAULTS), f"{where}.{key}") for key in MARGIN_DEFAULTS}
+    defaults = {**MARGIN_DEFAULTS, "min_delay_margin_s": min(DELAY_MARGIN_SAMPLES * sample_period_s, DELAY_MARGIN_S)}
+    checks.keys(section, where, (), tuple(defaults))
+    values = {key: checks.number(entry(section, key, defaults), f"{where}.{key}") for key in defaults}
     if values["max_sensitivity"] <= 1.0:
         got = repr(values["max_sensitivity"])
         raise BadInput("margin", f"{where}.max_sensitivity", got, "a number above 1", "2 is usual, 6 barely flies")

@@ -31,6 +31,12 @@ def test_a_plant_file_without_a_design_section_gets_the_documented_defaults():
     assert settings.margins.max_sensitivity == MARGIN_DEFAULTS["max_sensitivity"]
 
 
+@pytest.mark.parametrize(("period_s", "least_s"), [(0.0005, 0.001), (0.01, 0.02), (0.05, 0.02)])
+def test_two_samples_of_delay_are_to_be_stood_as_long_as_they_are_shorter_than_a_line(period_s, least_s):
+    assert read({"sample_period_s": period_s}).margins.min_delay_margin_s == pytest.approx(least_s, rel=1e-12)
+    assert read({"margins": {"min_delay_margin_s": 0.003}}).margins.min_delay_margin_s == 0.003
+
+
 def test_defaults_are_what_the_plant_file_of_the_helicopter_states():
     stated, default = read_settings(helicopter()), read({})
     for axis in ("elevation", "azimuth"):

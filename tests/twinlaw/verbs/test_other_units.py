@@ -45,9 +45,6 @@ prefilter_time_constant_s = 0.02
 reference_min_A = -3.0
 reference_max_A = 3.0
 
-[design.margins]
-min_delay_margin_s = 0.005
-
 [board]
 i_A = { analogue = "PA4", zero_scale_A = -5.12, full_scale_A = 5.12 }
 u_V = { pwm = "PA8", direction = "PB0" }
