@@ -1,14 +1,14 @@
 """Which loops a plant's law is to close, and which plants have the helicopter's, by the names of their columns."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from design.pins import with_pins
 from records.errors import BadInput
 from records.loops import LOOPS, MOST_LOOPS, Loop
 from records.pages import page
-from records.table import parse_loops
+from records.table import demand_distinct, parse_loop
 from records.text import checks
 from sim.bind import BoundPlant
 from sim.model import Axis, Model
@@ -32,7 +32,10 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
     if not 1 <= len(names) <= MOST_LOOPS:
         expected = f"1 to {MOST_LOOPS} sections, one a loop, as [design.arm] with output, input and poles_rad_s"
         raise BadInput("loops", where, f"{len(names)} sections", expected, "name the loops that the law is to close")
-    loops = parse_loops([_named(bound, name, section[name], f"{where}.{name}") for name in names], where)
+    loops = tuple(
+        parse_loop(_named(bound, name, section[name], f"{where}.{name}"), f"{where}.{name}") for name in names
+    )
+    demand_distinct(loops, where)
     for loop in loops:
         _demand_column("output", loop.output, [str(name) for name in bound.model.outputs], f"{where}.{loop.axis}")
         _demand_column("input", loop.input, [str(name) for name in bound.model.inputs], f"{where}.{loop.axis}")
@@ -42,12 +45,24 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
 def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, Any]:
     section = checks.table(entry, where)
     outputs, inputs = list(bound.model.outputs), [str(symbol) for symbol in bound.model.inputs]
-    only = {"output": outputs, "input": inputs}
     columns = {
-        key: section.get(key, str(found[0]) if len(found) == 1 else "one of " + " or ".join(map(str, found)))
-        for key, found in only.items()
+        key: section[key] if key in section else _only(key, found, where)
+        for key, found in {"output": outputs, "input": inputs}.items()
     }
     return {"axis": name, **columns, "motor": name}
+
+
+def _only(key: str, columns: Sequence[str], where: str) -> str:
+    """The plant's one output or input; raises BadInput where it has none, or several."""
+    if len(columns) == 1:
+        return columns[0]
+    if not columns:
+        expected = f"an {key} of the plant, which has none"
+        raise BadInput(
+            f"key {key!r}", where, "nothing", expected, f"give the equations an {key}, or leave [design] out"
+        )
+    expected = f"one of {', '.join(columns)}"
+    raise BadInput(f"key {key!r}", where, "nothing", expected, f'write {key} = "{columns[0]}", say')
 
 
 def _demand_column(what: str, name: str, known: list[str], where: str) -> None:

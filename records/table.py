@@ -20,7 +20,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -270,17 +270,36 @@ def parse_loops(entries: Any, where: str) -> tuple[Loop, ...]:
     """One to four loops of distinct names; raises BadInput."""
     if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_LOOPS:
         raise BadInput("loops", where, repr(entries)[:60], f"a list of 1 to {MOST_LOOPS} loops", "name fewer loops")
-    loops = tuple(_loop(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
+    loops = tuple(parse_loop(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
+    demand_distinct(loops, where)
+    return loops
+
+
+def demand_distinct(loops: Sequence[Loop], where: str) -> None:
+    """Raise BadInput where two loops share a name, a column or a pin."""
     named = {name: [getattr(loop, name) for loop in loops] for name in _LOOP_NAMES}
-    named["symbol"] = [name for loop in loops for name in (loop.symbol, loop.voltage)]  # what C's names are made of
     named["pins"] = [name for loop in loops if loop.pins is not None for name in loop.pins.names]
     for what, names in named.items():
         if len(set(names)) < len(names):
             raise BadInput("loops", where, f"{what} {', '.join(names)}", "each once", "name each loop's own")
-    return loops
+    _demand_own_symbols(loops, where)
 
 
-def _loop(entry: Any, where: str) -> Loop:
+def _demand_own_symbols(loops: Sequence[Loop], where: str) -> None:
+    """Names in C are made of the columns without their units: theta of theta_rad."""
+    columns = [pair for loop in loops for pair in ((loop.symbol, loop.output), (loop.voltage, loop.input))]
+    for symbol, column in columns:
+        same = next((other for known, other in columns if known == symbol and other != column), None)
+        if same is not None:
+            expected = "columns that differ without their units, as names in C are made of these"
+            remedy = f"rename one in the equations: u_{column}, say"
+            raise BadInput(
+                "loops", where, f"{column} and {same}, both {symbol!r} without their units", expected, remedy
+            )
+
+
+def parse_loop(entry: Any, where: str) -> Loop:
+    """One loop, as a table's file states it; raises BadInput naming the part that cannot be used."""
     section = checks.table(entry, where)
     checks.keys(section, where, _LOOP_NAMES, ("pins",))
     named = {name: checks.text(section[name], f"{where}.{name}") for name in _LOOP_NAMES}
@@ -294,8 +313,8 @@ def _loop(entry: Any, where: str) -> Loop:
             )
     for name, value in (("axis", loop.axis), ("motor", loop.motor), ("output", loop.symbol), ("input", loop.voltage)):
         if value in _C_WORDS:
-            got = f"{named[name]!r}, of which C is given {value!r}, a word of its own"
-            raise BadInput("name", f"{where}.{name}", got, "letters, digits and _, as in C", "choose another name")
+            got = f"{named[name]!r}, in C {value!r}, a word of that language or of C++"
+            raise BadInput("name", f"{where}.{name}", got, "a name that no keyword is", "choose another name")
     return loop
 
 

@@ -10,8 +10,16 @@ from records.table import parse_loops
     ("part", "name", "word"),
     [("axis", "double", "double"), ("output", "int_rad", "int"), ("input", "this_V", "this"), ("motor", "new", "new")],
 )
-def test_a_name_of_which_c_would_be_given_a_word_of_its_own_is_refused(part: str, name: str, word: str) -> None:
+def test_a_name_that_is_a_keyword_of_c_is_refused(part: str, name: str, word: str) -> None:
     plain = {"axis": "arm", "output": "theta_rad", "input": "u_V", "motor": "main"}
     assert parse_loops([plain], "design")[0].symbol == "theta"
-    with pytest.raises(BadInput, match=rf"design\[0\]\.{part}: name: got '{name}', of which C is given '{word}'"):
+    with pytest.raises(BadInput, match=rf"design\[0\]\.{part}: name: got '{name}', in C '{word}'"):
         parse_loops([{**plain, part: name}], "design")
+
+
+def test_columns_that_differ_by_their_units_alone_are_named() -> None:
+    entry = {"axis": "pan", "output": "pan_rad", "input": "pan_A", "motor": "pan"}
+    with pytest.raises(
+        BadInput, match=r"got pan_rad and pan_A, both 'pan' without their units.*rename one in the equations: u_pan_"
+    ):
+        parse_loops([entry], "design")
