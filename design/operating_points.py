@@ -1,7 +1,7 @@
 """The design at each operating point: equilibrium, linear plant, controller."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from design.direct_form import DeltaForm, to_delta
 from design.discretise import sample
 from design.linearise import linearise, subsystem
 from design.loop import PlantPolynomials, plant_polynomials
+from design.obstacles import advice
 from design.pole_placement import (
     FREE_DEGREES,
     Placement,
@@ -131,7 +132,10 @@ def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSett
     placement = placed_in_z(transfer.b, transfer.a, wanted, free)
     if not placement.is_sound:
         placement = placed_in_gamma(plant, wishes.placed_rad_s, free)
-    demand_usable(placement, where)
+    try:
+        demand_usable(placement, where)
+    except BadInput as refusal:
+        raise replace(refusal, remedy=advice(plant, integrates=wishes.free_degree == "integral")) from None
     return PointDesign(plant, transfer, placement, exact_delta(plant, placement, wishes))
 
 

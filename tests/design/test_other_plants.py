@@ -16,7 +16,18 @@ from records.table import ControllerTable
 from sim.bind import BoundPlant, bind
 from tests.angles import few_angles
 from tests.other_plants import AEROSHIELD, INVERTED_ARM, MOTOR, QUANSER, written
+from tests.own_plants import CART_POLE, FREE_SWING, MAGNET
 from tests.soak import SOAK
+
+MAGNET_WISHES: dict[str, Any] = {
+    "sample_period_s": 0.0005,
+    "ball": {
+        "poles_rad_s": [-60, -70, -80, -90, -300, -350],
+        "prefilter_time_constant_s": 0.1,
+        "reference_min_m": -0.002,
+        "reference_max_m": 0.002,
+    },
+}
 
 
 @cache
@@ -114,6 +125,34 @@ def test_what_cannot_be_designed_is_one_line_that_names_it(change: dict[str, Any
     with pytest.raises(BadInput, match=message) as caught:
         designed(plant("aeroshield"), {**AEROSHIELD, **change})
     assert "\n" not in str(caught.value)
+
+
+def test_a_ball_under_a_magnet_is_held_without_a_word_about_margins(tmp_path: Path) -> None:
+    """Truth: it falls by e in 1/44 s, so that no controller stands 20 ms more; designed at 0.5 ms, it stands the two samples."""
+    table, report = designed(bind(load_plant(MAGNET.write(tmp_path, "magnet"))), MAGNET_WISHES)
+    assert (table.order, table.sample_period_s) == (3, 0.0005)
+    assert 0.001 < report.axes[0].worst_margins.delay_s < 0.02
+
+
+def test_a_plant_without_an_input_has_no_loop_and_is_told_so(tmp_path: Path) -> None:
+    swing = bind(load_plant(FREE_SWING.write(tmp_path, "swing")))
+    with pytest.raises(
+        BadInput, match=r"design\.arm: key 'input': got nothing, expected an input of the plant, which has none"
+    ):
+        designed(swing, {"arm": {"poles_rad_s": [-4, -5, -6, -7]}})
+
+
+def test_of_several_outputs_one_is_asked_for(tmp_path: Path) -> None:
+    cart = bind(load_plant(CART_POLE.write(tmp_path, "cart")))
+    with pytest.raises(
+        BadInput, match=r"design\.pole: key 'output': got nothing, expected one of x_m, theta_rad, tip_m; write"
+    ):
+        designed(cart, {"pole": {"poles_rad_s": [-4, -5, -6, -7]}})
+
+
+def test_a_loop_called_as_a_keyword_is_refused_where_it_stands() -> None:
+    with pytest.raises(BadInput, match=r"design\.register\.axis: name: got 'register', in C 'register', a word of"):
+        designed(plant("aeroshield"), {"register": AEROSHIELD["arm"]})
 
 
 def test_a_loop_of_a_current_by_a_duty_is_asked_for_its_range_in_its_own_unit() -> None:

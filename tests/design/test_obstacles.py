@@ -1,0 +1,80 @@
+"""What is said of a plant that no usable controller is found for."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from design.discretise import sample
+from design.linearise import LinearPlant
+from design.loop import plant_polynomials
+from design.obstacles import advice
+from design.settings import read_settings
+from design.table import design
+from records.errors import BadInput
+from records.plant import load_plant
+from sim.bind import bind
+from tests.own_plants import CART_POLE
+
+POLES = [-3, -4, -5, -6, -10, -15, -20, -25]
+
+
+def cart_pole(folder: Path, **loop: Any) -> Any:
+    """The law of one loop of the cart that carries a pole."""
+    path = CART_POLE.write(folder, "cart")
+    lines = "".join(f"{key} = {value!r}\n" for key, value in loop.items())
+    path.write_text(f"{path.read_text()}\n[design.pole]\nprefilter_time_constant_s = 0.3\n{lines}")
+    bound = bind(load_plant(path))
+    return design(bound, read_settings(bound))
+
+
+def of(A: Any, B: Any, C: Any, sample_period_s: float = 0.01) -> Any:
+    """The sampled polynomials of a linear plant."""
+    linear = LinearPlant(
+        np.array(A, dtype=float), np.array(B, dtype=float).reshape(-1, 1), np.atleast_2d(np.array(C, float))
+    )
+    return plant_polynomials(sample(linear, sample_period_s))
+
+
+def test_a_cart_s_place_alone_does_not_hold_its_pole_and_no_poles_are_asked_for(tmp_path: Path) -> None:
+    """Truth by hand: the place has a zero at sqrt(g / l) = 5.72 rad/s, and the unstable pole lies beyond it."""
+    ends = {"reference_min_m": -0.3, "reference_max_m": 0.3}
+    with pytest.raises(BadInput, match=r"no poles will do: .* zeros at infinity and 5\.72 rad/s .*of cart and pole"):
+        cart_pole(tmp_path, output="x_m", poles_rad_s=POLES, **ends)
+
+
+def test_nor_does_its_angle_whose_value_no_force_keeps(tmp_path: Path) -> None:
+    """Truth: a constant angle takes an acceleration without end."""
+    ends = {"reference_min_rad": -0.1, "reference_max_rad": 0.1}
+    with pytest.raises(BadInput, match="at rest this input does not move that output"):
+        cart_pole(tmp_path, output="theta_rad", poles_rad_s=POLES[2:], **ends)
+
+
+def test_the_place_of_its_tip_holds_both(tmp_path: Path) -> None:
+    """Truth: (g / l) tip is its own second derivative's like, without a zero; the slowest pole is as asked, to a tenth."""
+    _, report = cart_pole(tmp_path, output="tip_m", poles_rad_s=POLES, reference_min_m=-0.3, reference_max_m=0.3)
+    assert report.axes[0].after_rounding.worst_rad_s == pytest.approx(-3.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("poles", "odd"), [((2.0, 3.0, -10.0), False), ((2.0, -3.0, -10.0), True), ((0.5, -3.0, -10.0), False)]
+)
+def test_only_an_odd_number_of_unstable_poles_between_two_zeros_stands_in_the_way(poles: Any, odd: bool) -> None:
+    """Truth: the zeros are at 1 rad/s and at infinity."""
+    companion = np.vstack([[0, 1, 0], [0, 0, 1], -np.poly(poles)[:0:-1]])
+    assert ("no poles will do" in advice(of(companion, [0, 0, 1], [-1, 1, 0]), integrates=True)) == odd
+
+
+def test_the_plant_s_own_poles_are_told_and_what_is_gone_in_a_sample_is_called_so() -> None:
+    """Truth: 0, -63 rad/s and -14400 rad/s, of which 10 ms leave 1e-63; a pair is told as one."""
+    told = advice(of(np.diag([0.0, -63.0, -14400.0]), [1, 1, 1], [1, 1, 1]), integrates=True)
+    assert "at 0, -63, -2.76e+03 or faster rad/s, its zeros at" in told
+    told = advice(of([[0, 1], [-25, -2]], [0, 1], [1, 0]), integrates=True)
+    assert "at -1 +- 4.9j rad/s" in told
+
+
+def test_a_zero_is_told_too_as_a_faster_loop_wants_a_pole_near_it() -> None:
+    """Truth: (s + 2)/(s^2 + 10 s + 25); a hold leaves the zero where it is, to 2 %."""
+    told = advice(of([[0, 1], [-25, -10]], [0, 1], [2, 1]), integrates=True)
+    assert float(told.split("its zeros at ")[1].split(" rad/s")[0]) == pytest.approx(-2.0, rel=0.02)
