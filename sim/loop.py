@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from records.errors import VerificationFailed
+from records.errors import BadInput, VerificationFailed
 from records.log import DOUBLE, RunLog
 from records.logs.live import LiveRow
 from records.table import ControllerTable
@@ -17,6 +17,7 @@ from sim.columns import log_columns, reference_name
 from sim.manoeuvres import Manoeuvre
 from sim.runs.stepped import SteppedPlant
 from sim.simulate import simulate
+from sim.substeps import fastest_rad_s, steps_a_stretch
 from sim.wiring import Wiring
 
 Array = NDArray[np.float64]
@@ -60,12 +61,13 @@ def fly(
     *,
     table_digest: str | None = None,
     arithmetic: str | None = None,
-    substeps: int = 1,
+    substeps: int | None = None,
 ) -> RunLog:
     """Fly a manoeuvre: at each t_k measure through the encoders, step the controller, hold its inputs until t_(k+1).
 
-    Raises VerificationFailed when the controller commands what is not a number. `table_digest` names the table that flies,
-    `arithmetic` in which its law computes.
+    Raises VerificationFailed when the controller commands what is not a number, BadInput when the plant's equations give none.
+    `table_digest` names the table that flies, `arithmetic` in which its law computes, `substeps` the integration steps a sample, by
+    default as many as the plant needs.
     """
     plant = SteppedPlant(bound, manoeuvre.x0, float(manoeuvre.t_s[0]))
     y, u = np.empty(manoeuvre.reference_rad.shape), np.empty((manoeuvre.t_s.size, len(bound.model.inputs)))
@@ -78,26 +80,54 @@ def fly(
         u[k] = command
         if k + 1 < manoeuvre.t_s.size:
             plant.advance(command, float(manoeuvre.t_s[k + 1]), substeps)
+    demand_numbers(bound, manoeuvre, y, plant.x)
     return replace(closed_loop_log(bound, manoeuvre, u, y, table_digest), arithmetic=arithmetic)
 
 
-def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, substeps: int = 1) -> RunLog:
+def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, substeps: int | None = None) -> RunLog:
     """The same flight with the float64 law of `table`, wholly in C: about a thousand times faster than `fly`.
 
     Raises BadInput for a table of other loops than the helicopter's, or of more than three states (sim/kernel/law.py).
     """
+    count = steps_a_sample(bound, manoeuvre) if substeps is None else substeps
     runs = simulate(
-        bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, substeps=substeps, keep="uy"
+        bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, substeps=count, keep="uyx"
     )
     assert runs.u is not None
     assert runs.y is not None
+    assert runs.x is not None
+    demand_numbers(bound, manoeuvre, runs.y, runs.x[-1])
     return replace(closed_loop_log(bound, manoeuvre, runs.u, runs.y, table.digest), arithmetic=DOUBLE)
+
+
+def demand_numbers(bound: BoundPlant, manoeuvre: Manoeuvre, y: Array, end: Array) -> None:
+    """Raise BadInput where a flight with outputs y (n, outputs) ends in states (states,) that are no numbers: no judging that."""
+    if np.all(np.isfinite(end)):
+        return
+    lost = np.flatnonzero(~np.all(np.isfinite(y), axis=1))
+    at_s = manoeuvre.t_s[lost[0] if lost.size else -1]
+    raise BadInput(
+        f"plant of {bound.plant.model}",
+        f"{manoeuvre.name} at t = {at_s:.6g} s",
+        "equations without a value there",
+        "a value wherever the plant goes, overshoot included",
+        "continue roots and quotients beyond their ends, as sign(h) sqrt(Abs(h)), or have references stay farther from them",
+    )
+
+
+def steps_a_sample(bound: BoundPlant, manoeuvre: Manoeuvre) -> int:
+    """The integration steps that a sample of this flight takes; raises BadInput for a plant that is too fast for any."""
+    return steps_a_stretch(bound, fastest_rad_s(bound, manoeuvre.x0), period_s(manoeuvre))
+
+
+def period_s(manoeuvre: Manoeuvre) -> float:
+    """The mean distance of its samples."""
+    return float(np.ptp(manoeuvre.t_s)) / (manoeuvre.t_s.size - 1)
 
 
 def closed_loop_log(bound: BoundPlant, manoeuvre: Manoeuvre, u: Array, y: Array, table_digest: str | None) -> RunLog:
     """The run log of a flight: inputs u (n, inputs), measured outputs y (n, outputs), and the references."""
-    period_s = float(np.ptp(manoeuvre.t_s)) / (manoeuvre.t_s.size - 1)
-    return _log(bound, period_s, manoeuvre.t_s, manoeuvre.reference_rad, u, y, table_digest)
+    return _log(bound, period_s(manoeuvre), manoeuvre.t_s, manoeuvre.reference_rad, u, y, table_digest)
 
 
 def live_log(bound: BoundPlant, rows: Sequence[LiveRow], table_digest: str | None) -> RunLog:

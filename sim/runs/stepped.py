@@ -11,6 +11,7 @@ from sim.kernel.kernel import kernel
 from sim.kernel.reading import reading
 from sim.paths.path import Held, OutputStage, Trace, in_steps, passed
 from sim.start import start_state
+from sim.substeps import fastest_rad_s, steps_a_stretch
 
 Array = NDArray[np.float64]
 
@@ -40,6 +41,7 @@ class SteppedPlant:
         self._resolution = np.array(bound.encoder_steps if resolution is None else resolution, dtype=float)
         self._y, self._u = np.zeros(len(model.outputs)), np.zeros(len(model.inputs))
         self._settled = False
+        self._fastest_rad_s = fastest_rad_s(bound, self._x)
         self._kernel.lib.constants_single(self._double(np.ascontiguousarray(bound.p)), self._double(self._c))
         self._lock(locked)
         self._pointers = [self._double(array) for array in (self._c, self._u, self._x, self._sign, self._move, self._y)]
@@ -62,11 +64,13 @@ class SteppedPlant:
         self._kernel.lib.measure_single(c, self._steps, self.t_s, x, y)
         return tuple(self._y.tolist())
 
-    def advance(self, u: Sequence[float], until_s: float, substeps: int = 1) -> None:
+    def advance(self, u: Sequence[float], until_s: float, substeps: int | None = None) -> None:
         """Command the inputs u, limited to the plant's range, until `until_s`; RK4 with located friction and stop events.
 
-        `substeps` steps for each stretch of constant input as it arrives.
+        `substeps` steps for each stretch of constant input as it arrives; by default as many as the plant's fastest motion needs.
         """
+        if substeps is None:
+            substeps = steps_a_stretch(self._bound, self._fastest_rad_s, until_s - self.t_s)
         if not self._bound.input_path:
             self._hold(u, until_s, substeps)
             times, states = [until_s], [self._x]

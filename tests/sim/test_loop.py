@@ -1,15 +1,20 @@
 """The closed loop: any controller, the project's flight, and the logs that come out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from design.law import FloatLaw
 from records.errors import BadInput, VerificationFailed
 from records.log import load_log, save_log
+from records.plant import load_plant
+from sim.bind import bind
 from sim.columns import log_columns
 from sim.loop import fly, fly_law
 from sim.manoeuvres import FLIGHT_AZIMUTH, FLIGHT_ELEVATION, FLIGHT_S, Leg, at_rest, flight, hop, manoeuvre, profile_rad
 from sim.runs.stepped import SteppedPlant
+from tests.own_plants import NO_AXIS, TANKS
 
 
 class Fixed:
@@ -97,3 +102,39 @@ def test_a_stepped_plant_is_the_simulated_plant(bound):
 def test_a_manoeuvre_without_a_sample_is_refused(bound):
     with pytest.raises(BadInput, match="at least one sample"):
         manoeuvre("short", at_rest(bound), 0.0, 0.01, ((Leg(0.0, 0.0),),) * 2)
+
+
+class Constant:
+    """A controller of one loop that always commands the same."""
+
+    def reset(self, *_: float) -> None:
+        """Nothing to forget."""
+
+    def step(self, *_: float) -> tuple[float, ...]:
+        """Six volts."""
+        return (6.0,)
+
+
+def test_a_state_that_is_faster_than_a_sample_is_followed_in_a_flight_too(tmp_path):
+    """Truth by hand: a coil of R/L = 2/1e-4 = 20 000 rad/s, 200 times a sample, has 6 V / 2 Ohm = 3 A at its end; to one count of 1 mA."""
+    path = NO_AXIS.write(tmp_path, "coil")
+    path.write_text(path.read_text().replace("value = 0.1\n", "value = 1e-4\n"))
+    coil = bind(load_plant(path))
+    log = fly(coil, Constant(), manoeuvre("hold", np.zeros(1), 0.5, 0.01, [[Leg(0.0, 0.0)]]))
+    assert log.y[1:, 0] == pytest.approx(3.0, abs=1e-3)
+
+
+def test_a_state_that_no_steps_follow_is_refused_in_words(tmp_path):
+    """Truth: 2e9 rad/s takes eight million steps in 10 ms."""
+    path = NO_AXIS.write(tmp_path, "coil")
+    path.write_text(path.read_text().replace("value = 0.1\n", "value = 1e-9\n"))
+    with pytest.raises(BadInput, match=r"a motion of 2e\+09 rad/s, which takes 8000000 steps in 10 ms"):
+        fly(bind(load_plant(path)), Constant(), manoeuvre("hold", np.zeros(1), 0.5, 0.01, [[Leg(0.0, 0.0)]]))
+
+
+def test_a_flight_into_where_the_equations_have_no_value_ends_with_its_time(tmp_path):
+    """Truth: what flows out goes by the root of how far the level stands below 1 m, and six volts fill it above."""
+    plain = TANKS.body.replace('sympy.sqrt(2 * p["g"] * h2)', 'sympy.sqrt(2 * p["g"] * (1 - h2))')
+    brim = bind(load_plant(replace(TANKS, body=plain).write(tmp_path, "brim")))
+    with pytest.raises(BadInput, match=r"pour at t = [0-9.]+ s: plant of brim: got equations without a value there"):
+        fly(brim, Constant(), manoeuvre("pour", np.array([0.5, 0.9]), 400.0, 0.05, [[Leg(0.0, 0.0)]]))

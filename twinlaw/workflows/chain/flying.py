@@ -15,18 +15,15 @@ from sim.bind import BoundPlant
 from sim.columns import log_columns, reference_name
 from sim.halving import StepError, step_error
 from sim.kernel.law import is_kernel_s
-from sim.loop import Wired, fly, fly_law
+from sim.loop import Wired, fly, fly_law, steps_a_sample
 from sim.manoeuvres import Manoeuvre, flight, steps, stir
 from sim.simulate import simulate
+from sim.substeps import MOST, fastest_rad_s, steps_a_stretch
 from sim.tracking import Tracking, tracking
 from sim.wiring import wiring
 from twinlaw.cli.console import stage
 from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
-
-MOST_SUBSTEPS = (
-    64  # of 10 ms: a time constant of 60 us; an amplifier's own is shorter, and no part of a plant that moves
-)
 
 
 @dataclass(frozen=True)
@@ -57,17 +54,18 @@ def flight_of(bound: BoundPlant, table: FlownTable) -> Manoeuvre:
 
 def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
     """A run of the plant without a loop, every input changed in steps, and the error of its integration, in as many steps a sample as its
-    fastest state needs; raises BadInput where MOST_SUBSTEPS are too few."""
-    moved, substeps = stir(bound), 1
+    fastest state needs; raises BadInput where sim.substeps.MOST are too few."""
+    moved = stir(bound)
+    substeps = steps_a_stretch(bound, fastest_rad_s(bound, moved.x0), float(moved.t_s[1]))
     with stage("stirring the plant without a loop"):
-        error = step_error(bound, moved.t_s, moved.x0, moved.u)
+        error = step_error(bound, moved.t_s, moved.x0, moved.u, substeps=substeps)
         while not np.isfinite(error.difference).all():
             substeps *= 2
-            if substeps > MOST_SUBSTEPS:
+            if substeps > MOST:
                 raise BadInput(
                     f"plant of {bound.plant.model}",
                     "simulation",
-                    f"outputs that leave all bounds, in steps of {1e3 * moved.t_s[1] / MOST_SUBSTEPS:.2g} ms",
+                    f"outputs that leave all bounds, in steps of {1e3 * moved.t_s[1] / MOST:.2g} ms",
                     "a plant that stays finite while its inputs change",
                     "check units and signs, or leave out a state that is so fast",
                 )
@@ -87,14 +85,16 @@ def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlig
 
 
 def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
-    """The step-halving check of that flight: how large the error of one integration step a sample is."""
+    """The step-halving check of that flight: how large the error of its integration steps is."""
     with stage("flying it with steps of half the length"):
         whole = flight_of(bound, table)
+        substeps, told = steps_a_sample(bound, whole), whole.reference_rad
         if isinstance(table, ControllerTable) and is_kernel_s(table):
-            return step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
+            return step_error(bound, whole.t_s, whole.x0, table, reference=told, substeps=substeps)
         texts, wires = loading.generate(table, "float32"), wiring(bound, table.loops)
         law = FlownLaw(texts, table.loops, wires)  # must outlive the flights
-        return step_error(bound, whole.t_s, whole.x0, law.controller(whole.t_s.size), reference=whole.reference_rad)
+        own = law.controller(whole.t_s.size)
+        return step_error(bound, whole.t_s, whole.x0, own, reference=told, substeps=substeps)
 
 
 def chain_flight(log: RunLog, loops: Sequence[Loop], counters: Mapping[str, int] | None = None) -> ChainFlight:
