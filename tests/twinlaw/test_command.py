@@ -47,3 +47,12 @@ def test_a_name_that_is_no_utf8_is_refused_before_anything_is_made(name: bytes, 
 def test_a_name_in_utf8_is_told_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["design", "--plant", str(tmp_path / "plän λ.toml")]) == 2
     assert "plän λ.toml" in capsys.readouterr().err
+
+
+def test_an_option_that_a_verb_has_not_is_told_with_that_verb_s_help(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["generate", "--plant", "plants/ce150.toml"])
+    assert left.value.code == 2
+    assert (
+        "unrecognized arguments: --plant plants/ce150.toml; `twinlaw generate --help` names" in capsys.readouterr().err
+    )

@@ -1,7 +1,7 @@
 """A parser whose complaint is one line, as all else that is told."""
 
 import argparse
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from twinlaw.cli import console
 
@@ -16,6 +16,13 @@ class WrongCommandLine(SystemExit):
 
 class Parser(argparse.ArgumentParser):
     """A parser that tells what is wrong with the command line in one line, as all else is told."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does, but what a verb does not know that verb refuses, whose help names what it knows."""
+        found, rest = super().parse_known_args(args, namespace)
+        if rest:
+            self.error(f"unrecognized arguments: {' '.join(rest)}")
+        return found, rest
 
     def error(self, message: str) -> NoReturn:
         """Leave with exit status 2."""
