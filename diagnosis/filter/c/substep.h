@@ -7,7 +7,7 @@
 #define FASTEST 0.5        /* of a state's own time constant, or of a radian's time of a swing, that a substep may last, */
 #define MANY_SUBSTEPS 8.0  /* but for so many: beyond, nothing is left of it anyway, and a substep need only be so short */
 #define FADES 1.5          /* that the series, too, make less of it: at 2 they would begin to grow */
-#define MOST_SUBSTEPS 64.0
+#define MOST_SUBSTEPS 1024.0 /* of 10 ms: a time constant of 7 us */
 
 /* `share` of a step from t_s on, and what its parts hand to one another. */
 typedef struct {

@@ -319,13 +319,16 @@ def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(
     assert np.nanmax(np.abs(found.w)) < 5.0
 
 
-def test_a_state_that_settles_well_within_a_row_neither_rings_nor_grows() -> None:
-    # Truth: the current settles within L/R = 1 ms, rows are 20 ms apart, and only the encoder's steps of 3 mrad are wrong. So a second
-    # of the true plant is predicted from any row to within three; a current of growing series would throw the angle about by turns.
-    motor = bind(load_plant(ROOT / "plants" / "dc_motor" / "plant.toml"))
+@pytest.mark.parametrize(("L", "substeps"), [(2e-3, 40), (1e-4, 400)])
+def test_a_state_that_settles_well_within_a_row_neither_rings_nor_grows(L: float, substeps: int) -> None:
+    # Truth: the current settles within L/R = 1 ms or 50 us, rows are 20 ms apart, and only the encoder's steps of 3 mrad are wrong. So a
+    # second of the true plant is predicted from any row to within three; a current of growing series would throw the angle about by turns.
+    stated = load_plant(ROOT / "plants" / "dc_motor" / "plant.toml")
+    winding = replace(stated.parameters["L"], value=L, sd=0.2 * L)
+    motor = bind(replace(stated, parameters={**stated.parameters, "L": winding}))
     t_s = np.arange(0.0, 8.0, 0.02)
     u = 3.0 * np.sign(np.sin(2.0 * np.pi * (0.6 + 0.1 * t_s) * t_s + 0.1))[:, None]
-    run = simulate(motor, t_s, np.zeros(3), drive=u, substeps=40)
+    run = simulate(motor, t_s, np.zeros(3), drive=u, substeps=substeps)
     case = make_case(effect_library(motor), [RunLog(log_columns(motor.model), 0.02, "open", t_s, u, run.y)])
     found = predictions(case, case.flights[0], nominal_hypothesis(case, -3.0))
     assert np.nanmax(np.abs(found - run.y)) < 0.01
