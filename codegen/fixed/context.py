@@ -14,6 +14,8 @@ from records.loops import Loop, full_scales_V
 from records.table import ControllerTable
 from records.text.units import unit_of
 
+SCHEDULE = "schedule"  # what the powers of the scheduling angle are called in the C, and with _ref behind it those of its reference
+
 
 @dataclass(frozen=True)
 class Coefficient:
@@ -87,7 +89,6 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
         "angle_limits": _angle_limits(table, law, formats),
         "axis_state_fields": tuple(fixed_axis_state(table.order).__dataclass_fields__),
         "powers": list(range(table.order + 1)),
-        "angle": "x" if table.schedule is None else table.loops[table.index(table.schedule.axis)].symbol,
         "axes": axes,
         "filters": {axis.filter for axis in axes},
         "multiplies_scaled": formats.degree > 1
@@ -115,12 +116,11 @@ def _all_polynomials(law: FixedLaw[int]) -> list[FixedPolynomial[int]]:
 def _axis(table: ControllerTable, index: int, law: FixedLaw[int], formats: LawFormats, proof: OverflowProof) -> Axis:
     loop, axis, own = table.loops[index], law.axes[index], formats.axes[index]
     names, stated = Names(loop), table.axes[index]
-    of = "x" if table.schedule is None else table.loops[table.index(table.schedule.axis)].symbol
     polynomials = [
-        _polynomial(loop, term.coefficient, term.polynomial, form.polynomial, of, proof)
+        _polynomial(loop, term.coefficient, term.polynomial, form.polynomial, SCHEDULE, proof)
         for term, form in zip(axis.terms, own.terms, strict=True)
     ]
-    polynomials.append(_polynomial(loop, "u_ff_V", axis.feedforward_V, own.feedforward, f"{of}_ref", proof))
+    polynomials.append(_polynomial(loop, "u_ff_V", axis.feedforward_V, own.feedforward, f"{SCHEDULE}_ref", proof))
     last = f"e_{table.order}_rad"
     return Axis(
         loop=loop,
@@ -132,7 +132,7 @@ def _axis(table: ControllerTable, index: int, law: FixedLaw[int], formats: LawFo
         prefilter_gain=axis.prefilter_gain or 0,
         prefilter_time_constant_s=stated.prefilter_time_constant_s,
         polynomials=tuple(polynomials),
-        terms=tuple(Term("+" if term.sign > 0 else "-", _product(axis.name, term, last, of)) for term in axis.terms),
+        terms=tuple(Term("+" if term.sign > 0 else "-", _product(axis.name, term, last)) for term in axis.terms),
         uses_last=any(term.factor == last for term in axis.terms),
         sum_places=own.sum_places,
         residue_places=axis.residue_places,
@@ -147,13 +147,13 @@ def _axis(table: ControllerTable, index: int, law: FixedLaw[int], formats: LawFo
     )
 
 
-def _product(axis: str, term: FixedTerm[int], last: str, of: str) -> str:
+def _product(axis: str, term: FixedTerm[int], last: str) -> str:
     if term.factor.startswith("e_"):
         factor = term.factor if term.factor == last else f"self->{term.factor}"
     else:
         factor = f"past->{term.factor}"
     function = "short_product" if term.is_short else "narrow_product" if term.is_narrow else "product"
-    product = f"{function}({axis}_{term.coefficient}({of}), {factor})"
+    product = f"{function}({axis}_{term.coefficient}({SCHEDULE}), {factor})"
     if term.doublings:
         return f"({product} << {term.doublings}u)"
     return f"floored_product({product}, {term.excess}u)" if term.excess else product

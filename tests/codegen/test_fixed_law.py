@@ -61,8 +61,8 @@ def test_an_even_schedule_needs_no_odd_power_and_a_vanishing_term_costs_nothing(
     text = generate_law(ce150_table(), "fixed")["law.c"]
     assert "azimuth_q_3" not in text
     azimuth = text[text.index("static int32_t azimuth_q_0") : text.index("static int32_t azimuth_a_0")]
-    assert "psi->x_2" in azimuth
-    assert "psi->x_1" not in azimuth
+    assert "schedule->x_2" in azimuth
+    assert "schedule->x_1" not in azimuth
 
 
 @pytest.mark.parametrize("table", TABLES)

@@ -86,7 +86,7 @@ def test_in_fixed_point_a_coefficient_stays_within_its_comment_and_leaves_a_narr
     narrower = FIXED_C.replace(f"[{low}..{high}]", f"[{int(high) - 1}..{high}]")
     (question,) = (q for q in polynomial_ranges(TABLE, narrower) if q.claim.startswith(name))
     assert not holds(question)
-    functions = [line for line in FIXED_C.splitlines() if "(const powers *psi" in line and "_move(" not in line]
+    functions = [line for line in FIXED_C.splitlines() if "(const powers *schedule" in line and "_move(" not in line]
     assert len(list(polynomial_ranges(TABLE, FIXED_C))) == len(functions)
 
 
