@@ -45,8 +45,10 @@ _C_WORDS = frozenset(
     long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast
     restrict return short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try
     typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq
+    NULL
     """.split()  # noqa: SIM905
 )
+_OF_THE_LAW = ("axis",)  # whose limits would be called as the type of all limits
 
 # A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
 # for one): it comes from a broken state, and the axis starts afresh.
@@ -283,6 +285,7 @@ def demand_distinct(loops: Sequence[Loop], where: str) -> None:
         if len(set(names)) < len(names):
             raise BadInput("loops", where, f"{what} {', '.join(names)}", "each once", "name each loop's own")
     _demand_own_symbols(loops, where)
+    _demand_own_members(loops, where)
 
 
 def _demand_own_symbols(loops: Sequence[Loop], where: str) -> None:
@@ -298,6 +301,15 @@ def _demand_own_symbols(loops: Sequence[Loop], where: str) -> None:
             )
 
 
+def _demand_own_members(loops: Sequence[Loop], where: str) -> None:
+    """The law's state holds each loop by its name, beside what was measured and asked for last."""
+    columns = [name for loop in loops for name in (loop.output, loop.reference)]
+    for loop in loops:
+        if loop.axis in columns:
+            got = f"a loop called {loop.axis!r}, as a column is"
+            raise BadInput("loops", where, got, "a name of its own", f"call it {loop.symbol}, say")
+
+
 def parse_loop(entry: Any, where: str) -> Loop:
     """One loop, as a table's file states it; raises BadInput naming the part that cannot be used."""
     section = checks.table(entry, where)
@@ -307,10 +319,12 @@ def parse_loop(entry: Any, where: str) -> Loop:
     if "pins" in section:
         loop = replace(loop, pins=_pins(section["pins"], f"{where}.pins", loop))
     for name, value in named.items():
-        if not _NAME.fullmatch(value) or (name == "axis" and value in _SHARED):
-            raise BadInput(
-                "name", f"{where}.{name}", repr(value), "letters, digits and _, as in C", "choose another name"
-            )
+        if not _NAME.fullmatch(value):
+            expected = "letters, digits and _, as in C, a letter first, 31 at most"
+            raise BadInput("name", f"{where}.{name}", repr(value), expected, "choose another name")
+    if loop.axis in (*_SHARED, *_OF_THE_LAW):
+        got = f"{loop.axis!r}, which the table or its C has for something else"
+        raise BadInput("name", f"{where}.axis", got, "a name of its own", "choose another name")
     for name, value in (("axis", loop.axis), ("motor", loop.motor), ("output", loop.symbol), ("input", loop.voltage)):
         if value in _C_WORDS:
             got = f"{named[name]!r}, in C {value!r}, a word of that language or of C++"

@@ -147,5 +147,5 @@ def _check_limits(model: Model, p: NDArray[np.float64], where: str) -> None:
     for variable, (lower, upper) in model.input_limits.items():
         low, high = evaluated(model, p, lower), evaluated(model, p, upper)
         if low >= high:
-            got = f"{lower} = {low:g} and {upper} = {high:g}"
-            raise BadInput(f"limits of {variable}", where, got, f"{lower} < {upper}", "widen the range")
+            got, expected = f"from {low:g} to {high:g}, of ({lower}, {upper})", "the least value, then a larger one"
+            raise BadInput(f"limits of {variable}", where, got, expected, "exchange them, or widen the range")

@@ -18,6 +18,8 @@ from sim.symbolic.printer import c_text
 
 SIGNS = ("positive", "non-negative", "any")
 
+LOG_COLUMNS = ("t_s", "seq")  # of every run log, beside its inputs
+
 # Names that the kernel's C has for something else (sim/kernel/c, sim/kernel/generate.py, sim/symbolic/assignments.py), and C's own words.
 _TAKEN = re.compile(
     r"t_s|seq|x|u|c|p|y|dx|sign|move|torque|up|down|level|left|[ABDEHI]|num|mask|select|any|all|splat|lane_.*|is_.*|model_.*|v\d+"
@@ -115,11 +117,18 @@ def _names(model: Model, equations: Equations) -> Iterator[Slip]:
             seen[name] = kind
     for kind, names in {**groups, "output": [*model.outputs], "axis": [axis.name for axis in model.axes]}.items():
         for name in names:
-            if not isinstance(name, str) or not name.isidentifier() or not name.isascii() or keyword.iskeyword(name):
+            if isinstance(name, str) and keyword.iskeyword(name):
+                yield Slip((name,), kind, f"{name!r}, a keyword of Python", "a name of its own", "rename it")
+            elif not isinstance(name, str) or not name.isidentifier() or not name.isascii():
                 yield Slip((str(name),), kind, shown(name), "letters, digits and _, a letter first", "rename it")
             elif kind in ("state", "input") and _TAKEN.fullmatch(name):
                 got = f"{name!r}, which the compiled kernel has for something else"
                 yield Slip((name,), kind, got, "a quantity with its unit, such as theta_rad or u_V", "rename it")
+    for kind, measured in (("output", model.outputs), ("signal", model.signals)):
+        for name in measured:
+            if name in (*LOG_COLUMNS, *groups["input"]):
+                got = f"{name!r}, a column of every log of this plant"
+                yield Slip((f"{kind}s",), kind, got, "a name of its own", f"call it y_{name}, say")
     for symbol in (*model.states, *model.inputs):
         if not symbol.is_real:
             got = f"{symbol}, of which SymPy does not know that it is real"

@@ -23,3 +23,18 @@ def test_columns_that_differ_by_their_units_alone_are_named() -> None:
         BadInput, match=r"got pan_rad and pan_A, both 'pan' without their units.*rename one in the equations: u_pan_"
     ):
         parse_loops([entry], "design")
+
+
+@pytest.mark.parametrize(
+    ("axis", "told"),
+    [
+        ("axis", r"\[0\]\.axis: name: got 'axis', which the table or its C has for something else"),
+        ("digest", r"got 'digest', which the table or its C has"),
+        ("NULL", r"got 'NULL', in C 'NULL'"),
+        ("theta_rad", r"a loop called 'theta_rad', as a column is.*call it theta, say"),
+        ("theta_ref_rad", r"a loop called 'theta_ref_rad', as a column is"),
+    ],
+)
+def test_a_loop_called_as_something_else_in_its_c_is_refused(axis: str, told: str) -> None:
+    with pytest.raises(BadInput, match=told):
+        parse_loops([{"axis": axis, "output": "theta_rad", "input": "u_V", "motor": "main"}], "design")

@@ -85,7 +85,11 @@ def change(content, path, value):
         ("sensors.roll_rad", {"resolution_rad": 1e-3}, "sensor 'roll_rad': got an unknown name"),
         ("sensors.psi_rad.resolution_rad", 0.0, "resolution_rad: number: got 0.0, expected a number above 0"),
         ("sensors.psi_rad.step_rad", 1e-3, "key 'step_rad': got an unknown key"),
-        ("parameters.u_max.value", -1.0, "limits of u_M_V: got u_min = 0 and u_max = -1, expected u_min < u_max"),
+        (
+            "parameters.u_max.value",
+            -1.0,
+            "limits of u_M_V: got from 0 to -1, of \\(u_min, u_max\\), expected the least value, then a larger one",
+        ),
         ("design", 3, "design: a table: got 3"),
         ("effects", "wind", "effects: a table: got 'wind'"),
     ],
