@@ -66,6 +66,10 @@ def generate(table: FlownTable, arithmetic: str = "float32") -> Mapping[str, str
 
 def verify(plant: BoundPlant, table: ControllerTable, arithmetic: str = "float32", steps: int = STEPS) -> Verification:
     """Twin, host and target over `steps` steps, bounds and cost; `passed` says whether all of it holds."""
+    if steps < 1:
+        raise BadInput(
+            "steps", "verify", str(steps), "a whole number from 1 on", "leave it out for as many as the verb compares"
+        )
     law = generate(table, arithmetic)
     poles = table_poles(plant, table, arithmetic)
     demand_drivable(table)
@@ -92,18 +96,29 @@ def fly(plant: BoundPlant, table: FlownTable | None = None, on: str = "double", 
             return fly_board(plant, table, client).log
 
 
-def identify(plant: BoundPlant, logs: Logs, holdout: Logs = (), free: str | None = None) -> Identification:
-    """The plant's parameters from run logs, and from experiments where their files are given; `free` names some, with commas."""
-    names = free_names(plant, free)
+def identify(
+    plant: BoundPlant, logs: Logs, holdout: Logs = (), free: str | Sequence[str] | None = None
+) -> Identification:
+    """The plant's parameters from run logs, and from experiments where their files are given; `free` names some, listed or with commas."""
+    names = free_names(plant, free if free is None or isinstance(free, str) else ",".join(free))
     wishes = Wishes(names, {}, None, None, only=None if free is None else names)
+    _demand_any(logs)
     with _files(logs) as fitted, _files(holdout) as kept, tempfile.TemporaryDirectory() as folder:
         return identified(plant, usable_inputs(fitted, kept, plant), wishes, Path(folder))
 
 
 def diagnose(plant: BoundPlant, logs: Logs, holdout: Logs = ()) -> Result:
     """What the plant's model lacks to explain the logs: `diagnosis` is what the verb writes, `plant` the improved one."""
+    _demand_any(logs)
     with _files(logs) as explained, _files(holdout) as kept:
         return diagnosed(plant, material_of(plant, explained, kept))
+
+
+def _demand_any(logs: Logs) -> None:
+    if isinstance(logs, str | Path):
+        raise BadInput("logs", str(logs), "one path", "a list of them, or records by name", f'write ["{logs}"]')
+    if not logs:
+        raise BadInput("logs", "run logs", "none", "at least one", "give its file in a list, or its record by name")
 
 
 @contextmanager

@@ -190,6 +190,11 @@ def _refuse_another_plant(bound: BoundPlant, table: ControllerTable) -> None:
     digest = plant_digest(bound.plant)
     known = str(table.origin["plant_digest"])
     if digest != known:
+        got, expected = f"{bound.plant.name!r}, digest {digest[:16]}", f"{table.plant!r}, digest {known[:16]}"
         raise BadInput(
-            "plant", bound.plant.name, digest[:16], known[:16], "give the plant that the table was designed on"
+            "plant",
+            f"table {table.digest[:16]}",
+            got,
+            expected,
+            "give the plant that the table was designed on, with --plant",
         )

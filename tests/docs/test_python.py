@@ -3,10 +3,12 @@
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import twinlaw
+from records.errors import BadInput
 from tests.docs.test_new_plant import run
 from tests.test_project import ROOT
 from twinlaw.command import main
@@ -35,6 +37,25 @@ def test_a_log_of_records_is_one_of_files(tmp_path: Path) -> None:
     found, again = (twinlaw.identify(arm, logs) for logs in ({"run": log}, [tmp_path / "simulation.csv"]))
     assert [entry.value for entry in found.estimates] == [entry.value for entry in again.estimates]
     assert {entry.name for entry in found.estimates} == {"K", "c", "l"}
+
+
+NOTHING: dict[str, Any] = {
+    "no logs": (lambda arm: twinlaw.identify(arm, []), "logs: got none, expected at least one"),
+    "no records": (lambda arm: twinlaw.diagnose(arm, {}), "logs: got none, expected at least one"),
+    "one path": (
+        lambda arm: twinlaw.diagnose(arm, "run.csv"),
+        r"got one path, expected a list of them.*\[\"run.csv\"\]",
+    ),
+    "no such parameter": (lambda arm: twinlaw.identify(arm, ["run.csv"], free=["mass"]), "'mass'.*an unknown name"),
+    "no step": (lambda arm: twinlaw.verify(arm, None, steps=0), "steps: got 0, expected a whole number from 1 on"),
+}
+
+
+@pytest.mark.parametrize(("call", "told"), NOTHING.values(), ids=NOTHING)
+def test_what_a_function_cannot_use_is_told_as_its_verb_tells_it(call: Any, told: str) -> None:
+    arm = twinlaw.load(ROOT / "plants" / "aeroshield.toml")
+    with pytest.raises(BadInput, match=told):
+        call(arm)
 
 
 @pytest.mark.soak
