@@ -28,6 +28,9 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
             expected = f"none: the helicopter's loops have the board's own pins, {page('firmware.md')}"
             raise BadInput("section [board]", board_where, "pins", expected, "leave it out")
         return LOOPS
+    if not bound.model.inputs:
+        remedy = "give the equations an input; without one `twinlaw simulate` shows how it moves, and `identify` and `diagnose` take it"
+        raise BadInput("loops", where, f"equations of {bound.plant.model} without an input", "one to command", remedy)
     names = [key for key, entry in section.items() if isinstance(entry, Mapping) and key not in _NO_LOOP]
     if not 1 <= len(names) <= MOST_LOOPS:
         expected = f"1 to {MOST_LOOPS} sections, one a loop, as [design.arm] with output, input and poles_rad_s"
@@ -53,14 +56,9 @@ def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, An
 
 
 def _only(key: str, columns: Sequence[str], where: str) -> str:
-    """The plant's one output or input; raises BadInput where it has none, or several."""
+    """The plant's one output or input; raises BadInput where it has several."""
     if len(columns) == 1:
         return columns[0]
-    if not columns:
-        expected = f"an {key} of the plant, which has none"
-        raise BadInput(
-            f"key {key!r}", where, "nothing", expected, f"give the equations an {key}, or leave [design] out"
-        )
     expected = f"one of {', '.join(columns)}"
     raise BadInput(f"key {key!r}", where, "nothing", expected, f'write {key} = "{columns[0]}", say')
 
