@@ -86,6 +86,7 @@ def bind(plant: Plant) -> BoundPlant:
     p = np.array([value for entry in ordered for value in entry.values])
     sd = np.array([value for entry in ordered for value in entry.sds])
     _check_limits(model, p, where)
+    _check_axes(model, p, where)
     return BoundPlant(plant, model, p, sd, effects, *paths)
 
 
@@ -149,3 +150,19 @@ def _check_limits(model: Model, p: NDArray[np.float64], where: str) -> None:
         if low >= high:
             got, expected = f"from {low:g} to {high:g}, of ({lower}, {upper})", "the least value, then a larger one"
             raise BadInput(f"limits of {variable}", where, got, expected, "exchange them, or widen the range")
+
+
+def _check_axes(model: Model, p: NDArray[np.float64], where: str) -> None:
+    """Inertia and dry friction where parameters alone give them, and stops, are those of a body."""
+    known = set(model.parameter_symbols)
+    for axis in model.axes:
+        for part, least, expected in (("inertia", 0.0, "above 0"), ("coulomb", -np.nextafter(0.0, 1.0), "0 or more")):
+            expression = sympy.sympify(getattr(axis, part))
+            if expression.free_symbols <= known and not evaluated(model, p, expression) > least:
+                got = f"{evaluated(model, p, expression):g}, of {expression}"
+                raise BadInput(f"{part} of axis {axis.name!r}", where, got, f"a number {expected}", "check its sign")
+        if axis.lower is not None and axis.upper is not None:
+            low, high = evaluated(model, p, axis.lower), evaluated(model, p, axis.upper)
+            if low >= high:
+                got, expected = f"{low:g} below and {high:g} above", "the lower stop, then the upper one"
+                raise BadInput(f"stops of axis {axis.name!r}", where, got, expected, "exchange them")

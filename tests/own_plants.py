@@ -364,6 +364,12 @@ return Model(
 """,
 )
 
+
+def _with(old: str, new: str) -> OwnPlant:
+    assert old in _ARM
+    return OwnPlant(ARM, ENCODER, _ARM.replace(old, new))
+
+
 WORKING: Mapping[str, OwnPlant] = {
     "coil": NO_AXIS,
     "plain": PLAIN,
@@ -383,5 +389,11 @@ REFUSED: Mapping[str, tuple[OwnPlant, str]] = {
     "no_axis_place": (NO_AXIS_PLACE, "no place"),
     "no_moment": (NO_MOMENT, "gravity without gravity_moment"),
     "speed_as_angle": (SPEED_AS_ANGLE, "which is its speed"),
+    "negative_inertia": (
+        _with('p["J"], torque', '-p["J"], torque'),
+        "inertia of axis 'arm': got -0.01, of -J, expected a number above 0",
+    ),
+    "negative_friction": (_with("torque, 0, None", "torque, -0.01, None"), "coulomb of axis 'arm': got -0.01"),
+    "stops_exchanged": (_with("torque, 0, None, None", "torque, 0, 1.0, -1.0"), "got 1 below and -1 above"),
     "level_alone": (LEVEL_ALONE, "no axis beside it that gravity turns"),
 }

@@ -23,8 +23,17 @@ LOG_COLUMNS = ("t_s", "seq")  # of every run log, beside its inputs
 # Names that the kernel's C has for something else (sim/kernel/c, sim/kernel/generate.py, sim/symbolic/assignments.py), and C's own words.
 _TAKEN = re.compile(
     r"t_s|seq|x|u|c|p|y|dx|sign|move|torque|up|down|level|left|[ABDEHI]|num|mask|select|any|all|splat|lane_.*|is_.*|model_.*|v\d+"
-    r"|(sin|cos)_v\d+|(friction|inverse_inertia)_\d+|sign_.*|[NM]_[A-Z0-9_]+|(AXIS|INPUT|KINK|STATE)_[A-Z]+|[A-Z]_HAS|NUM|LANES|UNROLLED|ALWAYS_INLINE|MODEL_CODE|EQUATIONS_ONCE|MANY_RUNS|SEEN_NUMBERS|NAN|INFINITY|auto|bool|case|char|const|default|do|double|enum|extern|false"
+    r"|(sin|cos)_v\d+|(friction|inverse_inertia)_\d+|sign_.*|[NM]_[A-Z0-9_]+|(AXIS|INPUT|KINK|STATE)_[A-Z]+|[A-Z]_HAS|NUM|LANES|UNROLLED|ALWAYS_INLINE|MODEL_CODE|EQUATIONS_ONCE|MANY_RUNS|SEEN_NUMBERS|NAN|INFINITY|NULL|auto|bool|case|char|const|default|do|double|enum|extern|false"
     r"|float|goto|inline|int|long|register|restrict|short|signed|sizeof|static|struct|switch|true|typedef|typeof|union|unsigned|void|volatile"
+)
+
+# Functions and constants that NumPy's and C's text of the equations calls by these names: a symbol of one of them would take its place.
+_FUNCTIONS = frozenset(
+    """
+    abs acos acosh amax amin arccos arccosh arcsin arcsinh arctan arctan2 arctanh array asin asinh atan atan2 atanh cbrt ceil copysign cos
+    cosh exp expm1 fabs floor fmax fmin fmod heaviside hypot log log10 log1p log2 logical_and logical_not logical_or max maximum min minimum
+    mod nan pi pow select sign sin sinh sqrt tan tanh
+    """.split()  # noqa: SIM905
 )
 
 
@@ -115,6 +124,17 @@ def _names(model: Model, equations: Equations) -> Iterator[Slip]:
                     (name,), f"{kind} {name!r}", f"the name of a {seen[name]} too", "a name of its own", "rename one"
                 )
             seen[name] = kind
+    signs = [str(sign) for sign in model.friction_signs]
+    for kind, names in groups.items():
+        for name in names:
+            for others, what in (
+                (_FUNCTIONS, "a function"),
+                ((str(TIME),), "the time"),
+                (signs, "a friction's direction"),
+            ):
+                if name in others:
+                    got = f"{name!r}, which the equations have for {what}"
+                    yield Slip((name,), f"{kind} {name!r}", got, "a name of its own", f"call it {name}_0, say")
     for kind, names in {**groups, "output": [*model.outputs], "axis": [axis.name for axis in model.axes]}.items():
         for name in names:
             if isinstance(name, str) and keyword.iskeyword(name):
@@ -172,6 +192,8 @@ def _coverage(model: Model, equations: Equations) -> Iterator[Slip]:
             state = getattr(axis, part)
             if state not in model.states and not (part == "position" and state is None):
                 yield Slip(words, what, f"the {part} {shown(state)}", f"a state: {listed(model.states)}")
+        if sympy.sympify(axis.inertia).is_zero:
+            yield Slip(words, what, "an inertia of 0", "a number above 0", "give its rate to a state without an axis")
         if axis.position is None and not (axis.lower is None and axis.upper is None):
             yield Slip(words, what, "a stop and no position", "stops of a position", "leave the stops out, as None")
     for state in model.states:
