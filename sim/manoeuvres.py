@@ -66,7 +66,9 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 STEP_SHARES = (0.0, 0.5, -0.3, 0.0)
 TIME_CONSTANTS = 8.0
 SHORTEST_HOLD_S, LONGEST_HOLD_S = 4.0, 15.0
-LONGEST_HOLD_SAMPLES = 5000  # of a slow plant, whose samples are few a second
+LONGEST_HOLD_SAMPLES = (
+    20_000  # of a slow plant, whose samples are few a second: an oven of 50 s behind a filter of 40 s takes 1040 s
+)
 
 
 def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:

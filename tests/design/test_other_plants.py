@@ -14,9 +14,10 @@ from records.errors import BadInput
 from records.plant import load_plant
 from records.table import ControllerTable
 from sim.bind import BoundPlant, bind
+from sim.manoeuvres import steps
 from tests.angles import few_angles
 from tests.other_plants import AEROSHIELD, INVERTED_ARM, MOTOR, QUANSER, written
-from tests.own_plants import CART_POLE, FREE_SWING, MAGNET
+from tests.own_plants import CART_POLE, FREE_SWING, HEATER, MAGNET
 from tests.soak import SOAK
 
 MAGNET_WISHES: dict[str, Any] = {
@@ -132,6 +133,19 @@ def test_a_ball_under_a_magnet_is_held_without_a_word_about_margins(tmp_path: Pa
     table, report = designed(bind(load_plant(MAGNET.write(tmp_path, "magnet"))), MAGNET_WISHES)
     assert (table.order, table.sample_period_s) == (3, 0.0005)
     assert 0.001 < report.axes[0].worst_margins.delay_s < 0.02
+
+
+def test_a_slow_plant_is_given_the_time_to_arrive(tmp_path: Path) -> None:
+    """Truth: eight time constants of 50 s of its slowest pole and twice 40 s of its filter make 1040 s a hold, of which there are four."""
+    wishes = {
+        "poles_rad_s": [-0.02, -0.03],
+        "prefilter_time_constant_s": 40.0,
+        "reference_min_K": 5.0,
+        "reference_max_K": 40.0,
+    }
+    bound = bind(load_plant(HEATER.write(tmp_path, "oven")))
+    table, _ = designed(bound, {"sample_period_s": 0.05, "body": wishes})
+    assert steps(bound, table).t_s[-1] == pytest.approx(4 * 1040.0)
 
 
 def test_a_plant_without_an_input_has_no_loop_and_is_told_so(tmp_path: Path) -> None:
