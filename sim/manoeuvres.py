@@ -67,7 +67,7 @@ STEP_SHARES = (0.0, 0.5, -0.3, 0.0)
 TIME_CONSTANTS = 8.0
 SHORTEST_HOLD_S, LONGEST_HOLD_S = 4.0, 15.0
 LONGEST_HOLD_SAMPLES = (
-    20_000  # of a slow plant, whose samples are few a second: an oven of 50 s behind a filter of 40 s takes 1040 s
+    25_000  # of a slow plant, of few samples a second: an oven of 50 s behind a filter of 40 s takes 1040 s
 )
 
 

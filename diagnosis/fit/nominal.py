@@ -39,7 +39,8 @@ def settled(case: Case, start: Hypothesis) -> Fit:
                 "diagnosis",
                 "states that leave all bounds",
                 "a plant that can follow these logs",
-                "check units, and leave out a state that is thousands of times faster than the rows",
+                "check units, leave out a state that is thousands of times faster than the rows, and give a root of what nothing "
+                "measures a slope at 0: h / (h^2 + 1e-6)^(1/4)",
             )
         again = fit(case, with_process_noise(case, found.hypothesis), rounds=NOMINAL_ROUNDS)
         if again is not None and again.log_posterior < found.log_posterior + SETTLED_GAIN:
