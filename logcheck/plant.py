@@ -206,7 +206,7 @@ def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
     own = grid_step(values)
     span = (float(log.t_s[0]), float(log.t_s[-1]))
     digits = printed_digits(values)
-    if digits is not None:
+    if digits is not None and not _by_chance(values, step, digits):
         yield _few_digits(log, name, column, step, digits)
     elif held < thresholds.OFF_GRID and own == 0.0:
         sentence = f"{column} does not lie on the encoder's grid of {step:.5g} or on any other: simulated, filtered or interpolated numbers"
@@ -226,8 +226,7 @@ def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
 def _few_digits(log: RunLog, name: str, column: str, step: float, digits: int) -> Found:
     """A column printed with few digits: what is rounded by more than its sensor does is left out; where that is most, it is refused."""
     values = log.column(column)
-    size = np.abs(np.where(np.isfinite(values) & (values != 0.0), values, step))
-    rounded_to = 10.0 ** (np.floor(np.log10(size)) + 1 - digits)
+    rounded_to = _rounded_to(np.where(np.isfinite(values) & (values != 0.0), values, step), digits)
     coarse: Rows = rounded_to > step * (1.0 + WHOLE)
     span = (float(log.t_s[0]), float(log.t_s[-1]))
     most = f"{float(rounded_to.max()):.2g}"
@@ -243,6 +242,18 @@ def _few_digits(log: RunLog, name: str, column: str, step: float, digits: int) -
     told = f"{sentence}: {in_words(count, 'reading')} with coarser ones than that left out; {remedy}"
     at = log.t_s[coarse]
     return Found(Finding("few_digits", name, column, float(at[0]), float(at[-1]), told, EXCLUDE, count), coarse)
+
+
+def _rounded_to(values: Array, digits: int) -> Array:
+    """The last of so many significant digits of each number, none of them 0."""
+    return np.asarray(10.0 ** (np.floor(np.log10(np.abs(values))) + 1 - digits))
+
+
+def _by_chance(values: Array, step: float, digits: int) -> bool:
+    """Whether a sensor's own steps look like few digits: readings of 0.001 each up to 0.999, and 1 besides, which needs no more."""
+    own = values[values != 0.0]
+    coarse = np.unique(own[_rounded_to(own, digits) > step * (1.0 + WHOLE)])
+    return 0 < coarse.size < thresholds.LEAST_COARSE and _phase(values, step) > thresholds.ON_GRID
 
 
 def printed_digits(values: Array) -> int | None:

@@ -89,6 +89,9 @@ JUMPS_RATIO = Limit(
 # plant
 FINEST_GRID = Limit(1e5, "steps", "beyond it the step is a number format's")
 FEW_DIGITS = Count(5, "digits", "a float32 has seven; an encoder's steps are all told apart by five in most ranges")
+LEAST_COARSE = Count(
+    3, "different readings", "that a grid ten times finer has one in ten of, all by chance in one log of a thousand"
+)
 COARSE_SHARE = Limit(
     0.5, "share of rows", "rounded by more than the sensor does: what is left would be of small angles alone"
 )

@@ -133,6 +133,18 @@ def test_degrees_are_no_radians_and_a_grid_is_found_by_its_step() -> None:
     assert any("degrees" in entry.finding.sentence for entry in found)
 
 
+@pytest.mark.parametrize(("beyond", "told"), [([1.0], False), ([1.0, 1.01], False), ([1.0, 1.01, 1.05], True)])
+def test_a_sensor_s_own_decimal_steps_are_few_digits_only_where_readings_enough_are_as_coarse(
+    beyond: list[float], told: bool
+) -> None:
+    """Truth: steps of 1 mrad up to a reference of exactly 1 rad; of a few readings that are multiples of 0.01 rad none needs more."""
+    log, facts = log_of(), plant_facts(PLANT)
+    rising = np.round(np.arange(-200, 1000) * 1e-3, 3)
+    log.y[:, 1] = np.resize(np.concatenate([rising, np.repeat(beyond, 100)]), len(log.y))
+    stated = replace(facts, steps={**facts.steps, "phi_rad": 1e-3})
+    assert ("few_digits" in kinds(list(plant_findings(log, "a", PLANT, stated)))) == told
+
+
 @pytest.mark.parametrize(("digits", "severity"), [(2, REFUSE), (3, EXCLUDE), (4, NOTE)])
 def test_readings_printed_with_few_digits_are_told_and_the_coarse_ones_left_out(digits: int, severity: str) -> None:
     # Truth: an encoder's angles of 1.2 rad at most. With three digits those above 1 rad stand in steps of 0.01, the others of 0.001.
