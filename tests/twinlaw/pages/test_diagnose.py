@@ -361,6 +361,11 @@ def test_where_nothing_was_found_no_share_of_the_error_is_told() -> None:
     assert "How well the plant predicts" in page
 
 
+def test_no_gap_that_chance_does_not_give_says_why_it_is_none() -> None:
+    small = replace(GAP, verdict="no gap", false_alarm_probability=1e-9, found=(), effects=())
+    assert "no gap: something is there, too small or too unsure to count, although a rig" in summary_text(small)
+
+
 def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
     assert class_in_words("torque(domega_M/dt)").endswith("a torque that depends on how fast omega_M changes")
     assert class_in_words("torque(psi, sgn psi_dot) on elevation").endswith(

@@ -150,6 +150,11 @@ def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
     if diagnosis.verdict != "gap" and p > decisions.ALARM:
         usual = "what remains is as small as on a rig that is as the plant file states, with its sensors"
         return usual if p >= USUAL else f"{usual}: {percent(p)} of such rigs show as much"
-    return (
+    seldom = (
         f"a rig that is as the plant file states, with its sensors, shows so large a gap with probability {chance(p)}"
+    )
+    return (
+        seldom
+        if diagnosis.verdict != "no gap"
+        else f"something is there, too small or too unsure to count, although {seldom}"
     )
