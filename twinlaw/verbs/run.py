@@ -11,12 +11,13 @@ from records.files import remove_all, write_atomic
 from records.log import save_log
 from records.table import table_text
 from records.verification import verification_text
+from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.page import page_text
 from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design import design_heading, design_rows
 from twinlaw.pages.run.report import run_page
-from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
+from twinlaw.pages.run.tracking import TRACKING_HEADING, left_sentence, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.designing import Designed, design_controller, poles_of, roll_off_trade
@@ -69,7 +70,16 @@ def run(chosen: argparse.Namespace) -> int:
     )
     write_atomic(out / "report.html", page_text(page))
     if chosen.json:
-        print(json.dumps({"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}))
+        print(
+            json.dumps(
+                {
+                    "out": str(out),
+                    "table_digest": designed.table.digest,
+                    "passed": verification.passed,
+                    "left": list(left(flight.tracking)),
+                }
+            )
+        )
         return 0
     print(console.table(design_rows(designed.report), design_heading(designed.report)))
     print()
@@ -77,6 +87,8 @@ def run(chosen: argparse.Namespace) -> int:
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
     print()
+    if gone := left_sentence(flight.tracking):
+        print(f"{gone}\n")
     print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")
     return 0

@@ -19,7 +19,7 @@ from sim.halving import StepError
 from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.quality import quality_sentence
-from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_facts, tracking_rows
+from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, left_sentence, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.designing import design_controller
 from twinlaw.workflows.chain.flying import fly_double, fly_host, halved_step, stirred
@@ -59,7 +59,7 @@ def run(chosen: argparse.Namespace) -> int:
         print(json.dumps(facts | tracking_facts(flight.tracking) | {"quality": quality_facts(quality)}))
     else:
         if gone:
-            print(f"the flight left its references, {' and '.join(gone)}: this controller does not hold this plant\n")
+            print(f"{left_sentence(flight.tracking)}\n")
         print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
         print(f"\n{_error_told(bound, error)}\n{quality_sentence(quality)}\n{path}")
     return 0

@@ -15,7 +15,7 @@ from records.verification import validation_text
 from sim.wiring import wiring
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import validation_rows
-from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
+from twinlaw.pages.run.tracking import TRACKING_HEADING, left_sentence, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board, validate_board
 from twinlaw.workflows.reading import load_bound
 
@@ -52,6 +52,8 @@ def run(chosen: argparse.Namespace) -> int:
     print(console.table(validation_rows(validation)))
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
+    if gone := left_sentence(flight.tracking):
+        print(f"\n{gone}")
     for note in validation.notes:
         print(f"\nnote: {note}")
     return 0

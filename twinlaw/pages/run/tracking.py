@@ -7,7 +7,7 @@ from typing import Any
 
 from records.quality import OVERSHOOT, STEADY_ERROR, STEADY_SHARE, Colour, Look, Quality, flag
 from records.text.units import unit_of, unit_suffix
-from sim.tracking import Tracking
+from sim.tracking import Tracking, left
 from twinlaw.pages.measured import settling_text
 from twinlaw.pages.page import Row
 from twinlaw.pages.quality import colour_of
@@ -50,6 +50,16 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
         )
         for entry in tracking
     ]
+
+
+def left_sentence(tracking: Sequence[Tracking]) -> str:
+    """That a flight did not stay with its references, where it did not; else empty."""
+    gone = left(tracking)
+    return (
+        f"the flight left its references, {' and '.join(gone)}: this controller does not hold this plant"
+        if gone
+        else ""
+    )
 
 
 def tracking_looks(entry: Tracking) -> tuple[Look, ...]:
