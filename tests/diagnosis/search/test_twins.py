@@ -12,7 +12,7 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.search.beam import beam_of, finalists
+from diagnosis.search.beam import Search, beam_of, finalists, with_twins
 from diagnosis.search.draughts import with_noise_beside, with_noise_of
 from diagnosis.search.exchange import fit_twins, is_twin, twins_of
 from diagnosis.search.fitting import refined
@@ -107,6 +107,18 @@ def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew()
     again = found[frozenset(("arm.stribeck",))]
     assert again.evidence > rub.evidence - 50.0
     assert again.fit.hypothesis.effects["arm.stribeck"]["b_s"] == pytest.approx(4e-4, rel=0.05)
+
+
+def test_what_is_fitted_anew_is_told_once(late: Case) -> None:
+    # The sensor's lag, of which the search knows a bad fit, is fitted in the place of the drive's: the better stands for both.
+    drive = supposed(late, LAG)
+    bad = replace(supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), evidence=drive.evidence - 1e3)
+    told = Search((drive, bad), named(), True, None, ())  # type: ignore[arg-type]
+    wider = with_twins(late, told, drive)
+    assert sorted({entry.effects for entry in wider.fitted}) == sorted(entry.effects for entry in wider.fitted)
+    again = wider.of(bad.effects)
+    assert again is not None
+    assert again.evidence > drive.evidence - 50.0
 
 
 def test_a_beam_holds_what_differs(late: Case) -> None:
