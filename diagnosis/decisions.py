@@ -90,11 +90,6 @@ REST_SHARES = Limits(
 JUDGED_START_S = Limit(3.0, "s", "so long readings tell which start it was")
 
 # Priors of numbers (fit)
-SMOOTH_INPUT = Limit(
-    1.0,
-    "rms of second over first differences",
-    "a rougher input was held: the ratio is 1.4 where each command is drawn anew, little where they are points of a way",
-)
 GRID_SD = Limit(
     3e-4, "share of the step", "a range of a thousand counts holds a coarse grid's step to a count", DEVELOPMENT
 )
@@ -105,7 +100,7 @@ SHAPE_COST = Limit(2.0, "nats", "a free shape, as if it were known to a seventh 
 TAKEN_IN = Limit(
     10.0,
     "nats",
-    "so much must be gained by anything further, an effect, lost frames, a delay that scatters, inputs that go straight between "
+    "so much must be gained by anything further, an effect, lost frames, a delay that scatters, commands between "
     "rows: chance gains 5 by the best of fifty",
     DEVELOPMENT,
 )

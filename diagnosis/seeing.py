@@ -10,7 +10,7 @@ from diagnosis.decisions import decided
 from diagnosis.detect.detection import detect
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.fit.between_rows import between_rows, straight
+from diagnosis.fit.between_rows import between_rows, with_commands
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.nominal import best_plain_fit, plain_beside, with_memory
@@ -41,11 +41,9 @@ def detected(case: Case, checked: Case | None, beside: FittedHypothesis | None =
     """Fit the plant alone, and score the library beside it; where a gap shows, once more from where the best single effect left the plant's
     numbers, as slopes from the stated ones may lead to another hill."""
     nominal = best_plain_fit(case)
-    held = case
-    case, nominal, between = between_rows(case, nominal)
+    commands, nominal, between = between_rows(case, nominal)
+    case, checked = with_commands(case, commands), None if checked is None else with_commands(checked, commands)
     nominal = with_memory(case, nominal)
-    if checked is not None and case is not held:
-        checked = straight(checked)
     seen = replace(scored(case, checked, nominal, between), beside=beside)
     if not alarmed(seen.detection.p):
         return seen

@@ -1,9 +1,15 @@
-"""What inputs did between two rows of a log: held as they were logged, or went straight to the next; whichever the logs find likelier.
+"""What inputs did between two rows of a log: held as they were logged, or commanded anew before the next; whichever the logs find likelier.
 
-A controller that wrote the log holds its command to the next row. A log with fewer rows than commands, or of an input that somebody else
-sampled, shows the ends of a way: to hold it puts it half a row late, which looks like a delay.
+A controller that wrote the log holds its command to the next row. A log that keeps every second or fourth of its rows, or of an input that
+somebody else sampled, shows the ends of a way: to hold the first puts the input late, which looks like a delay or a lead. Of n commands a
+row, straight from one row to the next, the mean is
+
+(1)  u_k + (1 - 1/n) (u_(k+1) - u_k) / 2
+
+which stands for the way to second order in the step.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,42 +17,56 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decisions import decided
-from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.nominal import gain_over, plain_fit
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.nominal import gain_over, settled
 from diagnosis.hypothesis.case import Case, FilteredLog
 from records.reasons import Decision
 
+HELD = 1.0
+FIRST_ROUNDS = 4
+COMMANDS = (2.0, 4.0, np.inf)  # a row: every second row kept, every fourth, or an input that never stands still
 
-def between_rows(case: Case, held: Fit) -> tuple[Case, Fit, tuple[Decision, ...]]:
-    """The case and its nominal fit with smooth inputs straight between rows, where that fits better than they were `held`, and the record
-    of that; the same, and none, where no input is smooth."""
-    other = straight(case)
-    if other is case:
-        return case, held, ()
-    found = plain_fit(other)
+
+def between_rows(case: Case, held: Fit) -> tuple[tuple[float, ...], Fit, tuple[Decision, ...]]:
+    """How many commands each input had from row to row, with the nominal fit then, where that fits better than they were `held`, and the
+    record of that."""
+    none = tuple(HELD for _ in case.library.bound.model.inputs)
+    commands = _sought(case, none, held)
+    if commands == none:
+        return none, held, ()
+    found = settled(with_commands(case, commands), held.hypothesis)
     gain = gain_over(case, held, found)
     better = gain > decisions.TAKEN_IN
-    rule = decided("between_rows", "inputs", gain, decisions.TAKEN_IN, "straight" if better else "held")
-    return (other, found, (rule,)) if better else (case, held, (rule,))
+    told = " and ".join(f"{count:g}" for count in commands)
+    rule = decided("between_rows", "inputs", gain, decisions.TAKEN_IN, f"{told} commands a row" if better else "held")
+    return (commands, found, (rule,)) if better else (none, held, (rule,))
 
 
-def straight(case: Case) -> Case:
-    """The case with smooth inputs straight between rows; itself where none is smooth."""
-    flights = [_straight(flight) for flight in case.flights]
-    same = all(one is other for one, other in zip(flights, case.flights, strict=True))
-    return case if same else case.with_flights(flights)
+def _sought(case: Case, none: tuple[float, ...], held: Fit) -> tuple[float, ...]:
+    """More commands of all inputs while a first fit gains by them; then each input held again, as one that was switched by hand is."""
+    commands, best = none, held
+    for count in COMMANDS:
+        tried = tuple(count for _ in none)
+        found = fit(with_commands(case, tried), best.hypothesis, rounds=FIRST_ROUNDS)
+        if found is None or found.log_posterior <= best.log_posterior:
+            break
+        commands, best = tried, found
+    for place in range(len(none) if commands != none and len(none) > 1 else 0):
+        tried = (*commands[:place], HELD, *commands[place + 1 :])
+        found = fit(with_commands(case, tried), best.hypothesis, rounds=FIRST_ROUNDS)
+        if found is not None and found.log_posterior > best.log_posterior:
+            commands, best = tried, found
+    return commands
 
 
-def _straight(flight: FilteredLog) -> FilteredLog:
-    """The log with the mean of a smooth input and the next for what was held: a straight way to second order in the step."""
+def with_commands(case: Case, commands: Sequence[float]) -> Case:
+    """The case with the mean of so many commands a row of each input; itself where all were held."""
+    if set(commands) <= {HELD}:
+        return case
+    share = 0.5 * (1.0 - 1.0 / np.array(commands))
+    return case.with_flights([_read(flight, share) for flight in case.flights])
+
+
+def _read(flight: FilteredLog, share: NDArray[np.float64]) -> FilteredLog:
     u = flight.filter_input.u
-    smooth = np.array([_is_smooth(column) for column in u.T], dtype=bool)
-    if not smooth.any():
-        return flight
-    mean = 0.5 * (u + np.concatenate([u[1:], u[-1:]]))
-    return replace(flight, filter_input=replace(flight.filter_input, u=np.where(smooth, mean, u)))
-
-
-def _is_smooth(u: NDArray[np.float64]) -> bool:
-    first, second = np.diff(u), np.diff(u, 2)
-    return bool(first.any() and np.mean(second**2) < decisions.SMOOTH_INPUT**2 * np.mean(first**2))
+    return replace(flight, filter_input=replace(flight.filter_input, u=u + share * np.diff(u, axis=0, append=u[-1:])))

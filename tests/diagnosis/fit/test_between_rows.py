@@ -1,11 +1,11 @@
-"""Inputs between rows: held where a controller held them, straight where rows of a smooth way were left out."""
+"""Inputs between rows: held where a controller held them, in the mean of several commands where rows were left out."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from diagnosis.fit.between_rows import between_rows
+from diagnosis.fit.between_rows import HELD, between_rows, with_commands
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from records.log import RunLog
@@ -22,8 +22,8 @@ def sparse(log: RunLog) -> RunLog:
 
 def asked(log: RunLog) -> tuple[Case, Case, list[str]]:
     case = arm_case(log)
-    found, _, rules = between_rows(case, nominal_fit(case))
-    return case, found, [rule.outcome for rule in rules]
+    commands, _, rules = between_rows(case, nominal_fit(case))
+    return case, with_commands(case, commands), [rule.outcome for rule in rules]
 
 
 def test_commands_that_were_held_stay_as_they_were_logged() -> None:
@@ -32,11 +32,21 @@ def test_commands_that_were_held_stay_as_they_were_logged() -> None:
     assert told in ([], ["held"])
 
 
-def test_the_ends_of_a_smooth_way_are_joined() -> None:
+def test_the_mean_of_the_commands_that_have_no_row_is_taken() -> None:
+    # Truth: each command is held for a row of the log before every fourth is kept, (1 - 1/4) / 2 of the way on in the mean; an angle is
+    # moved more by the first of them, so half as many may fit as well.
     log = sparse(arm_log(seed=81, seconds=LONG_S))
-    _, found, told = asked(log)
-    assert told == ["straight"]
+    _, found, (told,) = asked(log)
+    assert told in ("2 commands a row", "4 commands a row")
+    share = 0.5 * (1.0 - 1.0 / float(told[0]))
     u = found.flights[0].filter_input.u[:, 0]
-    assert u[:-1] == pytest.approx(0.5 * (log.u[:-1, 0] + log.u[1:, 0]))
+    assert u[:-1] == pytest.approx((1.0 - share) * log.u[:-1, 0] + share * log.u[1:, 0])
     assert u[-1] == log.u[-1, 0]
     assert np.array_equal(found.flights[0].log.u, log.u)  # the log itself is as it was
+
+
+def test_of_an_input_that_never_stands_still_the_way_is_straight() -> None:
+    case = arm_case(arm_log(seed=81))
+    u = case.flights[0].filter_input.u
+    assert with_commands(case, (np.inf,)).flights[0].filter_input.u[:-1] == pytest.approx(0.5 * (u[:-1] + u[1:]))
+    assert with_commands(case, (HELD,)) is case
