@@ -7,7 +7,8 @@
 #define FASTEST 0.5        /* of a state's own time constant, or of a radian's time of a swing, that a substep may last, */
 #define MANY_SUBSTEPS 8.0  /* but for so many: beyond, nothing is left of it anyway, and a substep need only be so short */
 #define FADES 1.5          /* that the series, too, make less of it: at 2 they would begin to grow */
-#define MOST_SUBSTEPS 1024.0 /* of 10 ms: a time constant of 7 us */
+#define MOST_SUBSTEPS 64.0   /* of a plant that began slower: so fast become parameters and states that make no sense, */
+#define AS_IT_BEGAN 2.0      /* or so many times what the plant needs where its log begins */
 
 /* `share` of a step from t_s on, and what its parts hand to one another. */
 typedef struct {
@@ -20,9 +21,9 @@ typedef struct {
     bool held[AXES], rests[AXES]; /* axes whose mean stays; those of them that are sure to */
 } substep;
 
-/* How many a step has: as many as the fastest state, and the fastest two that swing against each other, need; but for noise with a memory
- * and states that follow, which move exactly. */
-static int substeps_of(const filter_state *at, double h_s)
+/* The rate of the fastest state, and of the fastest two that swing against each other; but for noise with a memory and states that follow,
+ * which move exactly. */
+static double fastest_rad_s(const filter_state *at)
 {
     const double *const A = at->j.A;
     double fastest = 0.0, swinging = 0.0;
@@ -34,8 +35,15 @@ static int substeps_of(const filter_state *at, double h_s)
             if (A_HAS[i][k] && A_HAS[k][i])
                 swinging = fmax(swinging, fabs(A[i * N + k] * A[k * N + i]));
     }
-    const double span = h_s * fmax(fastest, sqrt(swinging)), enough = fmax(MANY_SUBSTEPS, ceil(span / FADES));
-    return (int)fmin(fmax(ceil(span / FASTEST), 1.0), fmin(enough, MOST_SUBSTEPS));
+    return fmax(fastest, sqrt(swinging));
+}
+
+/* How many a step has: as many as its fastest motion needs. */
+static int substeps_of(const filter_state *at, double h_s)
+{
+    const double span = h_s * fastest_rad_s(at), enough = fmax(MANY_SUBSTEPS, ceil(span / FADES));
+    const double most = fmax(MOST_SUBSTEPS, ceil(AS_IT_BEGAN * h_s * at->begun_rad_s / FADES));
+    return (int)fmin(fmax(ceil(span / FASTEST), 1.0), fmin(enough, most));
 }
 
 #endif
