@@ -79,13 +79,15 @@ class Pass:
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """A model's compiled filter with its numbers of states and outputs and the names of its axes."""
+    """A model's compiled filter with its numbers of states and outputs, the names of its axes, and the rate of the fastest motion of the
+    plant as stated, which says how many substeps make sense."""
 
     states: int
     outputs: int
     axes: tuple[str, ...]
     ffi: Any
     lib: Any
+    stated_rad_s: float = 0.0
 
     def run(
         self,
@@ -115,7 +117,7 @@ class Filter:
         found = self._found(filter_input, width, len(columns), keep_slopes, keep_gains)
         request = self._request("filter_request *", given | found)
         request.steps, request.columns, request.slots = steps, len(columns), width
-        request.rest_s = noise.rest_s
+        request.rest_s, request.stated_rad_s = noise.rest_s, self.stated_rad_s
         if self.lib.filter_run(request) != steps:
             return None
         F, K, H, gram = (found.pop(name) for name in ("F", "K", "H", "gram"))
@@ -269,8 +271,8 @@ def build_filter(name: str, equations: CText) -> Path:
     return build_shared(f"filter-{name}", (*made, *SOURCES, *HEADERS), flags=FLAGS)
 
 
-def open_filter(path: Path, sizes: Mapping[str, int], axes: tuple[str, ...]) -> Filter:
-    """Load a compiled filter whose model has `sizes["states"]` states and `sizes["outputs"]` outputs."""
+def open_filter(path: Path, sizes: Mapping[str, int], axes: tuple[str, ...], stated_rad_s: float = 0.0) -> Filter:
+    """Load a compiled filter whose model has `sizes["states"]` states and `sizes["outputs"]` outputs, of a plant as fast as stated."""
     declarations = "\n".join(line for line in DECLARATIONS.splitlines() if not line.startswith("#"))
     ffi, lib = load_shared(declarations, path)
-    return Filter(sizes["states"], sizes["outputs"], axes, ffi, lib)
+    return Filter(sizes["states"], sizes["outputs"], axes, ffi, lib, stated_rad_s)

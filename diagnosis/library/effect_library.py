@@ -34,6 +34,7 @@ from sim.composition.build import switched_model
 from sim.composition.switch import switch_name
 from sim.effect import Effect, FilterState, coefficient
 from sim.model import Model
+from sim.substeps import fastest_rad_s
 from toolchain.cache import CACHE_DIR, is_whole
 
 Array = NDArray[np.float64]
@@ -193,10 +194,10 @@ def _compiled(library: EffectLibrary, names: tuple[str, ...]) -> CompiledFilter:
         known = _noted(
             bound, what, lambda: (_built_in_subprocess if set(library.whole).issubset(names) else _build)(bound, names)
         )
-    p = np.array(known["p"])
+    p, stated_rad_s = np.array(known["p"]), fastest_rad_s(bound, np.zeros(len(bound.model.states)))
     p[: len(bound.p)] = bound.p
     return CompiledFilter(
-        filter=open_filter(Path(known["library"]), known["sizes"], tuple(known["axes"])),
+        filter=open_filter(Path(known["library"]), known["sizes"], tuple(known["axes"]), stated_rad_s),
         names=frozenset(names),
         switches=known["switches"],
         states=tuple(known["states"]),

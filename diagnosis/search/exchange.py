@@ -16,6 +16,8 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
 
+LITTLE = 1.0  # nats: so far from its top a fit may end, and what gains less is no better
+
 
 def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: Set[str]) -> None:
     """Each effect of the best hypothesis in turn changed for others, while that makes it better.
@@ -136,7 +138,7 @@ def _exchanged(
     ends = [entry for entry in thread_map(lambda entry: refined(case, entry), near) if entry]
     keep_better(found, ends)
     end = max(ends, key=lambda entry: entry.evidence, default=best)
-    return end if end.evidence > best.evidence else None
+    return end if end.evidence > best.evidence + LITTLE else None
 
 
 def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Job]:

@@ -15,8 +15,7 @@ typedef struct {
     filter_request *request;
     double c[N_CONSTANTS], u[N_INPUTS];
     plant_body body;
-    int64_t pieces;     /* that events cut the motion into so far */
-    double begun_rad_s; /* how fast its states were where the log begins */
+    int64_t pieces; /* that events cut the motion into so far */
     jacobians j;
     matrix P, A, square, F, FP, PF; /* the last five are worked with within a step */
     /* Rows and columns of matrices are 0 where a state sleeps, but F's are those of 1, and are left alone. */

@@ -60,10 +60,8 @@ int32_t filter_run(filter_request *request)
         hold_inputs(&at, step);
         measure(&at, step);
         events_settle(at.body.x, at.body.sign, at.body.move, request->t_s[step], at.u, at.c);
-        if (step == 0) { /* how fast the states are, before any step has told */
+        if (step == 0) /* how fast the states are, before any step has told */
             model_state_slopes(request->t_s[0], at.body.x, at.u, at.c, at.body.sign, at.j.A);
-            at.begun_rad_s = fastest_rad_s(&at);
-        }
         if (step + 1 < request->steps)
             advance_to_next(&at, step);
         for (int i = 0; i < N; i++)

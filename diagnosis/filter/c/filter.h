@@ -25,6 +25,7 @@ typedef struct {
     double *filtered;                        /* [rows][N_STATES] with the row's own measurement, or NULL */
     double *gram, *pull;                     /* [columns][columns] dw'dw and [columns] dw'w over all measurements */
     double *F, *K, *H;                       /* [steps][N_STATES^2], [steps][N_OUTPUTS][N_STATES] twice, or NULL */
+    double stated_rad_s;                     /* of the fastest motion of the plant as its file states it */
     double rest_s;                           /* the usual step from row to row */
     double log_likelihood;
 } filter_request;

@@ -7,8 +7,8 @@
 #define FASTEST 0.5        /* of a state's own time constant, or of a radian's time of a swing, that a substep may last, */
 #define MANY_SUBSTEPS 8.0  /* but for so many: beyond, nothing is left of it anyway, and a substep need only be so short */
 #define FADES 1.5          /* that the series, too, make less of it: at 2 they would begin to grow */
-#define MOST_SUBSTEPS 64.0   /* of a plant that began slower: so fast become parameters and states that make no sense, */
-#define AS_IT_BEGAN 2.0      /* or so many times what the plant needs where its log begins */
+#define MOST_SUBSTEPS 16.0 /* or so many times what the plant needs as its file states it: faster become parameters and states that */
+#define AS_STATED 4.0      /* make no sense, and a lag so much shorter than a row is none */
 
 /* `share` of a step from t_s on, and what its parts hand to one another. */
 typedef struct {
@@ -42,7 +42,7 @@ static double fastest_rad_s(const filter_state *at)
 static int substeps_of(const filter_state *at, double h_s)
 {
     const double span = h_s * fastest_rad_s(at), enough = fmax(MANY_SUBSTEPS, ceil(span / FADES));
-    const double most = fmax(MOST_SUBSTEPS, ceil(AS_IT_BEGAN * h_s * at->begun_rad_s / FADES));
+    const double most = fmax(MOST_SUBSTEPS, ceil(AS_STATED * h_s * at->request->stated_rad_s / FADES));
     return (int)fmin(fmax(ceil(span / FASTEST), 1.0), fmin(enough, most));
 }
 
