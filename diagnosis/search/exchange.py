@@ -1,4 +1,5 @@
-"""Effects of the best hypothesis exchanged for others: what was fitted beside a wrong effect is tried where the rest fits."""
+"""Effects of the best hypothesis exchanged for others, for their twins, or left out: what was fitted beside a wrong effect is tried where
+the rest fits."""
 
 from collections.abc import Mapping, Sequence, Set
 
@@ -11,12 +12,11 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
+from diagnosis.fit.scoring import LITTLE_PROMISED
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
-
-LITTLE = 1.0  # nats: so far from its top a fit may end, and what gains less is no better
 
 
 def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: Set[str]) -> None:
@@ -70,7 +70,7 @@ def fit_twins(
     ends = [entry for entry in thread_map(lambda entry: refined(case, entry), begun) if entry]
     fresh: dict[frozenset[str], FittedHypothesis] = {}
     keep_better(fresh, [*begun, *ends])
-    found.update(fresh)
+    keep_better(found, fresh.values())
     return list(fresh.values())
 
 
@@ -86,9 +86,8 @@ def _twins_begun(
     for twin in sorted(wanted):
         begun = [promised[twin].begun] if twin in promised else []
         begun += _of_its_size(case, first, name, twin, begun)
-        start, there = likeliest(case, begun) if begun else (first.fit.hypothesis, -np.inf)
-        starts += [start] if there > -np.inf else []
-    return starts
+        starts += [likeliest(case, begun)] if begun else []
+    return [start for start, value in starts if value > -np.inf]
 
 
 def _is_near(known: FittedHypothesis | None, first: FittedHypothesis) -> bool:
@@ -138,7 +137,7 @@ def _exchanged(
     ends = [entry for entry in thread_map(lambda entry: refined(case, entry), near) if entry]
     keep_better(found, ends)
     end = max(ends, key=lambda entry: entry.evidence, default=best)
-    return end if end.evidence > best.evidence + LITTLE else None
+    return end if end.evidence > best.evidence + LITTLE_PROMISED else None
 
 
 def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Job]:

@@ -109,6 +109,18 @@ def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew()
     assert again.fit.hypothesis.effects["arm.stribeck"]["b_s"] == pytest.approx(4e-4, rel=0.05)
 
 
+def test_a_twin_that_was_found_better_is_kept() -> None:
+    # The same twin, known to lack 31 nats: too much to be near, and less than a fit in the place of the friction ends short of it.
+    case = arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=71))
+    rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
+    known = supposed(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
+    known = replace(known, evidence=rub.evidence - decisions.NEAR_BEST - 1.0)
+    found = {frozenset(entry.effects): entry for entry in (rub, known)}
+    (again,) = [entry for entry in fit_twins(case, found, rub) if entry.effects == known.effects]
+    assert again.evidence < known.evidence
+    assert found[frozenset(known.effects)] is known
+
+
 def test_what_is_fitted_anew_is_told_once(late: Case) -> None:
     # The sensor's lag, of which the search knows a bad fit, is fitted in the place of the drive's: the better stands for both.
     drive = supposed(late, LAG)
