@@ -18,12 +18,11 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import gain_over, settled
+from diagnosis.fit.nominal import NOMINAL_ROUNDS, gain_over, settled
 from diagnosis.hypothesis.case import Case, FilteredLog
 from records.reasons import Decision
 
 HELD = 1.0
-FIRST_ROUNDS = 4
 COMMANDS = (2.0, 4.0, np.inf)  # a row: every second row kept, every fourth, or an input that never stands still
 
 
@@ -47,13 +46,13 @@ def _sought(case: Case, none: tuple[float, ...], held: Fit) -> tuple[float, ...]
     commands, best = none, held
     for count in COMMANDS:
         tried = tuple(count for _ in none)
-        found = fit(with_commands(case, tried), best.hypothesis, rounds=FIRST_ROUNDS)
+        found = fit(with_commands(case, tried), best.hypothesis, rounds=NOMINAL_ROUNDS)
         if found is None or found.log_posterior <= best.log_posterior:
             break
         commands, best = tried, found
     for place in range(len(none) if commands != none and len(none) > 1 else 0):
         tried = (*commands[:place], HELD, *commands[place + 1 :])
-        found = fit(with_commands(case, tried), best.hypothesis, rounds=FIRST_ROUNDS)
+        found = fit(with_commands(case, tried), best.hypothesis, rounds=NOMINAL_ROUNDS)
         if found is not None and found.log_posterior > best.log_posterior:
             commands, best = tried, found
     return commands

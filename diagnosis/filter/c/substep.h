@@ -8,7 +8,7 @@
 #define MANY_SUBSTEPS 8.0  /* but for so many: beyond, nothing is left of it anyway, and a substep need only be so short */
 #define FADES 1.5          /* that the series, too, make less of it: at 2 they would begin to grow */
 #define MOST_SUBSTEPS 16.0 /* or so many times what the plant needs as its file states it: faster become parameters and states that */
-#define AS_STATED 4.0      /* make no sense, and a lag so much shorter than a row is none */
+#define AS_STATED 4.0      /* make no sense, and a lag so much shorter than a row is none: antx_2dof_drone, 40 us of 4 ms */
 
 /* `share` of a step from t_s on, and what its parts hand to one another. */
 typedef struct {
