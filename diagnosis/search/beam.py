@@ -204,33 +204,13 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     for step in (refined, once_more, with_own_events):
         ends = thread_map(lambda names, step=step: step(case, found[names]), asked)
         keep_better(found, [end for end in ends if end is not None])
-    last = finalists(case, [found[frozenset(entry.effects)] for entry in best])
-    keep_better(found, with_noise_beside(case, last))
+    keep_better(found, with_noise_beside(case, [entry for entry in found.values() if _certain(entry, found)]))
 
 
 def _within_reach(fitted: FittedHypothesis, best: FittedHypothesis, nominal: FittedHypothesis) -> bool:
     """Whether a better fit may bring a hypothesis to the best: near it, or with a good share of its gain."""
     short, gain = best.evidence - fitted.evidence, best.evidence - nominal.evidence
     return short <= max(decisions.NEAR_BEST, (1.0 - decisions.WORTH_REFINING) * gain)
-
-
-def finalists(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
-    """The best of each number of effects with what is hardly told from it, and from that: between these noise decides. While hypotheses
-    grow it must not: noise with a memory follows what a further effect would explain."""
-    found: list[FittedHypothesis] = []
-    for size in sorted({len(entry.effects) for entry in fitted}):
-        own = sorted((entry for entry in fitted if len(entry.effects) == size), key=lambda entry: -entry.evidence)
-        found += _hardly_told(case, own[0], own[1:])
-    return found
-
-
-def _hardly_told(case: Case, first: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
-    """The first, its twins among the others, theirs, and so on: a lag before the plant is no twin of a delay behind it, but both are of a
-    lag there, and noise that is taken beside some of them must be beside all."""
-    found = [first]
-    for entry in found:  # which grows on the way
-        found += [other for other in others if other not in found and is_twin(case, other, entry)]
-    return found
 
 
 def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:

@@ -80,7 +80,7 @@ def _noisy_of_a_size(
 def _own_noise(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> FittedHypothesis | None:
     """The hypothesis with the noise of the first; or with what it shows by itself, where its innovations promise more and that is
     likelier."""
-    shared = _with_memory(case, fitted, first)
+    shared = _with_memory(case, fitted, first) if _has_memory(case, first) else fitted
     if shared is not None and _foretold(case, shared) - _foretold(case, first) < decisions.TAKEN_IN:
         return shared
     own = _with_memory(case, fitted)
@@ -104,18 +104,28 @@ def _has_memory(case: Case, fitted: FittedHypothesis) -> bool:
 def _in_reach(
     case: Case, own: FittedHypothesis, noisy: FittedHypothesis, others: Sequence[FittedHypothesis]
 ) -> list[FittedHypothesis]:
-    """Those of the others that noise with a memory could bring near the likeliest, `own`, which has become `noisy` with its own: it gains
-    about what their innovations foretell, beyond what those of the likeliest do, which rounding leaves. Between twins noise decides: they
-    are asked where they lack no more than it gained."""
-    left = _foretold(case, noisy)
-    promised = thread_map(lambda entry: max(_foretold(case, entry) - left, 0.0), others)
-    near, gained = noisy.evidence - decisions.NEAR_BEST, noisy.evidence - own.evidence
-    told = zip(others, promised, strict=True)
-    return [
-        entry
-        for entry, gain in told
-        if entry.evidence + gain >= near or (is_twin(case, entry, own) and own.evidence - entry.evidence <= gained)
-    ]
+    """Those of the others that noise with a memory could bring near the likeliest, `own`, which has become `noisy` with its own, those that
+    it could bring furthest. It gains what their innovations foretell, beyond what those of the likeliest do, which rounding leaves; and
+    more, as parameters that bent for want of it come back. Between twins noise decides: they are asked where they lack no more than it
+    gained."""
+    left, gained = _foretold(case, noisy), noisy.evidence - own.evidence
+    promised = thread_map(lambda entry: decisions.PARAMETERS_BACK * max(_foretold(case, entry) - left, 0.0), others)
+    reach = {entry: entry.evidence + gain for entry, gain in zip(others, promised, strict=True)}
+    furthest = sorted(
+        (entry for entry in others if reach[entry] >= noisy.evidence - decisions.NEAR_BEST),
+        key=lambda entry: -reach[entry],
+    )
+    twins = [entry for entry in hardly_told(case, own, others) if own.evidence - entry.evidence <= gained]
+    return list(dict.fromkeys([*furthest[: decisions.SETTLED_FITS], *twins]))
+
+
+def hardly_told(case: Case, first: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
+    """The twins of the first among the others, theirs, and so on: a lag before the plant is no twin of a delay behind it, but both are of
+    a lag there, and noise that is taken beside some of them must be beside all."""
+    found = [first]
+    for entry in found:  # which grows on the way
+        found += [other for other in others if other not in found and is_twin(case, other, entry)]
+    return found[1:]
 
 
 def _foretold(case: Case, fitted: FittedHypothesis) -> float:

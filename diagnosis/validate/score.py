@@ -5,27 +5,19 @@ out to have at that horizon: its mean log is -ln rms(tau) + const. So of two mod
 
     gain = sum over outputs, mean over horizons, of ln(rms_other(tau) / rms_model(tau))
 
-nats a reading better. `misfit` is the same against what no model could better: the sensor's own error, and the process noise q that the
-model itself supposes, seen through readings of variance R = r T every T (the steady state of a filter of a free axis: Bar-Shalom, Li and
-Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 8.2):
-
-    P_x = 2^(1/2) q^(1/4) R^(3/4), P_xv = q^(1/2) R^(1/2), P_v = 2^(1/2) q^(3/4) R^(1/4)
-    attainable(tau)^2 = r + P_x + 2 P_xv tau + P_v tau^2 + q tau^3 / 3
-
-of an axis; of a measured state that is none, r + (q R)^(1/2) + q tau.
+nats a reading better. `misfit` is the same against what no model could better (attainable.py).
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter.filter_input import variance_stated
-from diagnosis.hypothesis.case import Case, FilteredLog
+from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.validate.attainable import attainable, coarse_steps
 from diagnosis.validate.prediction import WINDOW_S, windows
-from sim.effect import Role
 
 Array = NDArray[np.float64]
 HORIZONS_S = (
@@ -67,15 +59,15 @@ def errors_of(case: Case, hypothesis: Hypothesis, read: Callable[[Hypothesis], S
     smooth = hypothesis  # what a coarse reading rounds is no error of the model
     if shown:
         smooth = hypothesis.with_effects({name: v for name, v in hypothesis.effects.items() if name not in shown})
-    squares, attainable = [], []
+    squares, best = [], []
     for flight, predicted in zip(case.flights, read(smooth), strict=True):
         error = (predicted - flight.log.y) ** 2
-        mine = _attainable(case, flight, hypothesis)
+        mine = attainable(case, flight, hypothesis, HORIZONS_S)
         for first, last in windows(flight.log.t_s):
             horizon = np.searchsorted(HORIZONS_S, flight.log.t_s[first:last] - flight.log.t_s[first] - 1e-9)
             squares.append(_by_horizon(error[first:last], horizon))
-            attainable.append(mine)
-    return Errors(np.array(squares), _grid(case, hypothesis, shown), np.array(attainable))
+            best.append(mine)
+    return Errors(np.array(squares), _grid(case, hypothesis, shown), np.array(best))
 
 
 def score(model: Errors, other: Errors) -> Score:
@@ -129,44 +121,9 @@ def _by_horizon(error: Array, horizon: NDArray[np.int64]) -> Array:
     return found
 
 
-def _attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> Array:
-    """Mean squares (horizons, outputs) that no model could better, as the hypothesis has the noise."""
-    library, model = case.library, case.library.bound.model
-    begins = np.append(0.0, HORIZONS_S[:-1])
-    tau = 0.5 * (begins + np.array(HORIZONS_S))
-    noise = {
-        str(axis.position): 10.0 ** (2.0 * q) for axis, q in zip(model.axes, hypothesis.process_noise, strict=True)
-    }
-    states = {state: 10.0 ** (2.0 * level) for state, level in hypothesis.state_noise.items()}
-    coarse = _steps(case, hypothesis)
-    found = np.empty((len(HORIZONS_S), len(model.outputs)))
-    for place, (name, expression) in enumerate(model.outputs.items()):
-        errors = hypothesis.reading_noise.get(name)
-        r = float(flight.filter_input.single[library.outputs.index(name)])
-        r = r if errors is None else variance_stated(library.bound.plant, name)
-        r = max(r if np.isfinite(r) else 0.0, coarse.get(name, 0.0) ** 2 / 12.0, 1e-30)
-        q = noise.get(str(expression), 0.0)
-        R = r * flight.step_s
-        r += 0.0 if errors is None else errors.sd**2
-        r += np.sqrt(drift * R) + drift * tau if (drift := states.get(str(expression), 0.0)) > 0.0 else 0.0
-        P_x, P_xv, P_v = np.sqrt(2.0) * q**0.25 * R**0.75, np.sqrt(q * R), np.sqrt(2.0) * q**0.75 * R**0.25
-        found[:, place] = r + P_x + 2.0 * P_xv * tau + P_v * tau**2 + q * tau**3 / 3.0
-    return found
-
-
-def _steps(case: Case, hypothesis: Hypothesis) -> Mapping[str, float]:
-    """The steps of the sensors that a hypothesis takes to be coarse, by output."""
-    effects, sensors = case.library.effects, case.library.bound.model.places.sensors
-    return {
-        sensors[effects[name].place].output: values[effects[name].symbol(Role.STEP)]
-        for name, values in hypothesis.effects.items()
-        if effects[name].shown_in_readings
-    }
-
-
 def _grid(case: Case, hypothesis: Hypothesis, shown: Sequence[str]) -> Array:
     """ln(step / stated step) (outputs,) of each coarse grid: readings that can only lie so far apart are so much likelier where they do."""
-    steps = _steps(case, hypothesis) if shown else {}
+    steps = coarse_steps(case, hypothesis) if shown else {}
     sensors = case.library.bound.plant.sensors
     return np.array(
         [

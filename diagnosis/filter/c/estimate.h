@@ -15,7 +15,7 @@ typedef struct {
     filter_request *request;
     double c[N_CONSTANTS], u[N_INPUTS];
     plant_body body;
-    int64_t pieces; /* that events cut the motion into so far */
+    int64_t events; /* of the motion so far */
     jacobians j;
     matrix P, A, square, F, FP, PF; /* the last five are worked with within a step */
     /* Rows and columns of matrices are 0 where a state sleeps, but F's are those of 1, and are left alone. */
@@ -48,7 +48,7 @@ static void start(filter_state *at, filter_request *request)
         }
     for (int a = 0; a < AXES; a++)
         at->body.sign[a] = at->body.move[a] = 0.0;
-    at->pieces = 0;
+    at->events = 0;
     request->log_likelihood = 0.0;
 }
 

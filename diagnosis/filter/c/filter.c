@@ -18,8 +18,8 @@
 #include "rest.h"
 #include "substep.h"
 
-#define PIECES_ALLOWED 200 /* of the motion between events, */
-#define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
+#define EVENTS_ALLOWED 200 /* that stick, slide or hit a stop, */
+#define EVENTS_A_STEP 2    /* and for each step: plants that rub have 0.9 at most, one that makes no sense has no end of them */
 
 /* Mean, slopes and covariance over a substep. */
 static void predict(filter_state *at, substep *part)
@@ -67,7 +67,7 @@ int32_t filter_run(filter_request *request)
         for (int i = 0; i < N; i++)
             if (!(fabs(at.body.x[i]) < 1e9))
                 return (int32_t)step;
-        if (at.pieces > PIECES_ALLOWED + PIECES_A_STEP * step)
+        if (at.events > EVENTS_ALLOWED + EVENTS_A_STEP * step)
             return (int32_t)step;
     }
     finish_slopes(&at.slopes, request);

@@ -15,7 +15,7 @@ static void move_mean(filter_state *at, const substep *part)
     rk4_step(part->t_s, part->h_s, &at->body, at->u, at->c, x, &seen);
     const bool suspect = N_AXES + N_KINKS > 0 && any(step_suspect(&at->body, x, part->h_s, at->c, &seen));
     if (suspect)
-        at->pieces += events_advance(at->body.x, at->body.sign, at->body.move, part->t_s, part->h_s, at->u, at->c, NULL, NULL);
+        at->events += events_advance(at->body.x, at->body.sign, at->body.move, part->t_s, part->h_s, at->u, at->c, NULL, NULL) - 1;
     else
         for (int i = 0; i < N; i++)
             at->body.x[i] = x[i];
