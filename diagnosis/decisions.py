@@ -144,13 +144,6 @@ MATTERS = Limit(
     "a smaller difference of predictions is none: some thousand rows make it certain, and it is nothing to an engineer",
     "third rig, seeds 41 and 181: false gaps -0.05 to 0.03; effects of 1.5 floors and more on all rigs 0.041 and more",
 )
-FORMS_OFF = Limit(
-    0.1,
-    "share of what a name predicts better",
-    "that each of its effects must at least: forms are so far off what they stand for, and a further effect makes up for it",
-    "AeroShield and PAMH, where third effects that come and go with the split have 0.03 to 0.08; of 90 sealed answers one true effect "
-    "of 0.8 floors has 0.096, all others more",
-)
 DRAUGHT = Limit(
     0.02,
     "shares of the axis' usual torque",
@@ -216,7 +209,12 @@ NEXT = Count(
     "pairs and triples of seeds 900006 and 900007",
 )
 BEAM = Counts((3, 2), "hypotheses", "of each size that are worth a further effect: time", DEVELOPMENT)
-CLOSE_PAIR_SHARE = Limit(0.05, "share of the gap", "the same of a large gap", DEVELOPMENT)
+CLOSE_PAIR_SHARE = Limit(
+    0.05,
+    "share of the gap",
+    "what is further from the best is not worth a further effect, nor to be settled",
+    DEVELOPMENT,
+)
 LEAST_GAIN = Limit(4.0, "nats", "a score test below is not worth a fit")
 LEAST_SHARE = Limit(0.01, "share of the best score test", "nor is one below this")
 COSTLY_EFFECTS = Count(14, "effects", "worth a costly score test beside others", DEVELOPMENT)
@@ -234,13 +232,13 @@ MISSED = Limit(15.0, "nats", "far less likely", "the Quanser arm; seeds 900006 a
 WORTH_REFINING = Limit(
     0.2,
     "share of the best fit's gain",
-    "first fits below are not fitted to their end, nor ends settled: time",
+    "first fits below are not fitted to their end: time",
     DEVELOPMENT,
 )
 NEAR_BEST = Limit(
     30.0,
     "nats",
-    "a first fit further short of the best is not fitted to its end; an end so near it is settled, whatever its share",
+    "a first fit further short of the best is not fitted to its end; an end so near it is settled, however small the gap",
     "pairs and triples of seeds 900006 and 900007",
 )
 NEARLY_AS_GOOD = Limit(
@@ -319,11 +317,8 @@ SAME_PLACE = Limit(
 OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the library's", DEVELOPMENT)
 
 # What other logs say (decide)
-PREFERRED = Count(4, "names", "of which a hold-out is asked which it prefers: time")
-LEAST_PREFERRED = Limit(0.02, "probability", "a less probable name is not asked: time")
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
 LIKELIER_THAN_NOT = Limit(0.5, "probability", "likelier than all else together")
-NO_FAVOUR = Limit(0.0, "1", "as much speaks for a name as against it")
 CONTRADICTION = Limit(
     150.0,
     "nats",

@@ -10,12 +10,12 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
-from diagnosis.decide.consequence import without_idle
+from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of
 from diagnosis.decide.rows import EARLY, LATE, demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
-from diagnosis.decide.weighing import Foretold, Tried, Weighed, first_share, likeliest, weigh
+from diagnosis.decide.weighing import Tried, Weighed, first_share, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.detect.detection import form_scores
 from diagnosis.detect.linearisation import linearised
@@ -192,17 +192,16 @@ def _ranked(
     known: Holdout | None = None,
 ) -> _Ranked:
     """What was found, ranked; `known` is a hold-out that was made before."""
-    tried, idle = without_idle(logs, _tried(seen, found, beyond))
-    weighed = weigh(tried)
-    seen = seen.because(*found.decisions, *idle)
+    tried = _tried(seen, found, beyond)
+    ahead = foreseen(logs, tried)
+    weighed = weigh(tried, ahead)
+    seen = seen.because(*found.decisions, *foreseen_rules(ahead, weighed))
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     if holdout is None or not weighed.fitted:
         return _Ranked(seen.because(*weighed.decisions), weighed, holdout)
-    nats, preferences = preferred(holdout, weighed)
-    first = weigh(tried, Foretold(nats)).fitted[0]
-    told, notes, rules = asked(holdout, first)
-    weighed = weigh(tried, Foretold(nats, favour(told)))
-    return _Ranked(seen.because(*preferences, *rules, *weighed.decisions), weighed, holdout, notes)
+    told, notes, rules = asked(holdout, weighed.fitted[0])
+    weighed = weigh(tried, ahead, favour(told))
+    return _Ranked(seen.because(*rules, *weighed.decisions), weighed, holdout, notes)
 
 
 def _tried(seen: Seen, found: Search, beyond: Retune | None) -> Tried:
@@ -211,7 +210,8 @@ def _tried(seen: Seen, found: Search, beyond: Retune | None) -> Tried:
     library = seen.case.library
     left = left_beside(form_scores(linearised(seen.case, best.fit)), [library.effects[name] for name in best.effects])
     named = tuple(entry for entry in found.fitted if entry.effects)
-    return Tried(named, seen.retuned, library, left, None if beyond is None else beyond.score)
+    alone, evidence = (None, None) if beyond is None else (beyond.fitted, beyond.score)
+    return Tried(named, seen.retuned, library, left, alone, evidence)
 
 
 def _checked(

@@ -1,10 +1,10 @@
 """From what logs say of several explanations of a gap to how probable each is, by a law whose numbers are learned from sealed answers.
 
 (1)  scale        = e^size (1 + formed)^power, nats that forms a little off the truth may cost: more where more is explained by them
-(2)  ln weight_i  = evidence_i / scale + prior_i - further n_i + hold_out h_i, n_i effects beside one, h_i nats on logs not fitted
-(3)  ln weight_p  = evidence_p / scale, of the plant's own parameters beyond their spread and no effect
-(4)  P(explained) = 1 / (1 + e^-z), z = intercept + left ln(1 + left) + gain ln(1 + gain) + favour f + several (n > 0), of the
-     likeliest by (2) and (3): what it gains, and what is left beside it of what the best and then free forms gain
+(2)  ln weight_i  = evidence_i / scale + prior_i - further n_i + ahead a_i, n_i effects beside one, a_i nats of predictions over a second
+(3)  ln weight_p  = evidence_p / scale + ahead a_p, of the plant's own parameters beyond their spread and no effect
+(4)  P(explained) = 1 / (1 + e^-z), z = intercept + left ln(1 + left) + gain ln(1 + gain) + favour f, of the likeliest by (2) and (3):
+     what it gains, and what is left beside it of what the best and then free forms gain; f is what logs say that were not fitted
 (5)  P_i          = P(explained) weight_i / sum of weights
 
 The rest is an effect's that no candidate explains; where the likeliest has a name, of that a share is right in part, as so many wrong
@@ -24,12 +24,13 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Candidate:
     """An explanation by one effect or several ("a.b + c.d"): nats of its evidence beyond the plant alone, log odds before the data
-    less what parameters beyond their spread cost, and nats by which logs that were not fitted prefer it to the likeliest (0: not asked)."""
+    less what parameters beyond their spread cost, and nats by which it predicts the logs better than the plant alone over horizons from a
+    row to a second, a reading for each second."""
 
     effect: str
     evidence_nats: float
     prior_nats: float
-    hold_out_nats: float = 0.0
+    ahead_nats: float = 0.0
 
     @property
     def further(self) -> int:
@@ -41,7 +42,7 @@ class Candidate:
 class ModelComparison:
     """What is known of a gap's explanations: nats that the best of them gains (`gain_nats`), of these what rests on forms of effects
     (`formed_nats`), what free forms still gain beside it (`left_nats`), what logs that were not fitted say of the first (-1 to 1; None
-    without such logs or a first), and nats of parameters beyond their spread alone (None: there are none)."""
+    without such logs or a first), and of parameters beyond their spread alone nats of evidence (None: there are none) and ahead."""
 
     candidates: tuple[Candidate, ...]
     gain_nats: float
@@ -49,6 +50,7 @@ class ModelComparison:
     left_nats: float
     favour: float | None = None
     parameters_nats: float | None = None
+    parameters_ahead_nats: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -58,12 +60,11 @@ class ComparisonLaw:
     size: float
     power: float
     further: float
-    hold_out: float
+    ahead: float
     intercept: float
     left: float
     gain: float
     favour: float
-    several: float
     partly_single: float
     partly_several: float
 
@@ -75,10 +76,11 @@ class ComparisonLaw:
         """Of each candidate, then of parameters alone, of all that explains: weights of (2) and (3) over their sum (candidates + 1,)."""
         scale = self.scale_nats(told.formed_nats)
         logs = [
-            one.evidence_nats / scale + one.prior_nats - self.further * one.further + self.hold_out * one.hold_out_nats
+            one.evidence_nats / scale + one.prior_nats - self.further * one.further + self.ahead * one.ahead_nats
             for one in told.candidates
         ]
-        alone = -np.inf if told.parameters_nats is None else told.parameters_nats / scale
+        ahead = self.ahead * told.parameters_ahead_nats
+        alone = -np.inf if told.parameters_nats is None else told.parameters_nats / scale + ahead
         found = np.array([*logs, alone])
         if not np.isfinite(found).any():
             return np.zeros(len(found))
@@ -96,7 +98,7 @@ class ComparisonLaw:
     @property
     def coefficients(self) -> tuple[float, ...]:
         """Those of (4), in the order of `features`."""
-        return (self.left, self.gain, self.favour, self.several)
+        return (self.left, self.gain, self.favour)
 
     def partly(self, first: Candidate | None) -> float:
         """How often a part of a wrong name is right."""
@@ -117,8 +119,7 @@ def features(told: ModelComparison, shares: Array) -> tuple[float, ...]:
     evidence_nats = told.parameters_nats if first is None else first.evidence_nats
     gain_nats = max(evidence_nats or 0.0, 0.0)
     left_nats = told.left_nats + max(told.gain_nats - gain_nats, 0.0)
-    several = float(first is not None and first.further > 0)
-    return (float(np.log1p(left_nats)), float(np.log1p(gain_nats)), told.favour or 0.0, several)
+    return (float(np.log1p(left_nats)), float(np.log1p(gain_nats)), told.favour or 0.0)
 
 
 def law_of(numbers: Mapping[str, Any]) -> ComparisonLaw:

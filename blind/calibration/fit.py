@@ -20,9 +20,9 @@ from records.model_comparison import ComparisonLaw, features
 Array = NDArray[np.float64]
 
 # What is believed of the first half before any answer, (mean, standard deviation): that differences of some ten nats count at first, and of
-# some fifty where forms explain ten thousand; that a further effect costs what any wrong effect gains by chance; that nats which nothing
-# was fitted to count whole.
-SHARES = {"size": (1.2, 0.7), "power": (0.28, 0.1), "further": (2.5, 1.5), "hold_out": (1.0, 0.5)}
+# some fifty where forms explain ten thousand; that a further effect costs what any wrong effect gains by chance; that nats by which the
+# logs are predicted over a second count in part, as they were fitted to.
+SHARES = {"size": (1.2, 0.7), "power": (0.28, 0.1), "further": (2.5, 1.5), "ahead": (0.3, 0.3)}
 INTERCEPT_DECAY = 0.01  # a standard deviation of ten logits, which only keeps it finite where all answers are right
 SAME = 1e-9  # a feature with a smaller standard deviation does not vary
 SLOPE = 1e-7  # nats per unit, at which the second half is at its end
@@ -36,7 +36,7 @@ MISLED = 0.05  # of the answers, in which every candidate may be right alike
 LEAST = 0.01  # of a share: what is right and has less was not found
 WITHHELD = 0.1  # of an answer, what each with a smaller library counts: of six gaps one is no library's
 
-UNLEARNED = ComparisonLaw(*(mean for mean, _ in SHARES.values()), *[0.0] * 5, *[0.5] * 2)
+UNLEARNED = ComparisonLaw(*(mean for mean, _ in SHARES.values()), *[0.0] * 4, *[0.5] * 2)
 
 
 def fit(examples: Sequence[Example], decay: float) -> ComparisonLaw:
@@ -101,9 +101,9 @@ def _with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: floa
     numbers = _logistic(told, right, weight, np.array([INTERCEPT_DECAY, *[decay] * int(varies.sum())]))
     coefficients = np.zeros(len(sd))
     coefficients[varies] = numbers[1:] / sd[varies]
-    left, gain, favour, several = coefficients.tolist()
+    left, gain, favour = coefficients.tolist()
     intercept = float(numbers[0] - coefficients @ mean)
-    return replace(law, intercept=intercept, left=left, gain=gain, favour=favour, several=several)
+    return replace(law, intercept=intercept, left=left, gain=gain, favour=favour)
 
 
 def _logistic(told: Array, right: Array, weight: Array, decay: Array) -> Array:

@@ -1,13 +1,13 @@
-"""Whether a gap matters, and each effect of a name: some thousand rows make any small thing certain, and what changes no prediction is
-nothing to an engineer."""
+"""Whether a gap matters, and what a name predicts better: some thousand rows make any small thing certain, and what changes no prediction
+is nothing to an engineer."""
 
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.weighing import Tried, Weighed, beyond_spread, weigh
+from diagnosis.decide.weighing import Tried, Weighed
 from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
@@ -18,6 +18,8 @@ from records.reasons import Decision
 
 Array = NDArray[np.float64]
 ASKED = 3  # of the most probable explanations
+MOST_FORESEEN = 24  # explanations: time
+TOLD_FROM = 0.02  # probability: of less probable ones no rule is told
 LEAST_WEIGHT = 1e-6  # where the unknown is all, its rivals count alike
 
 
@@ -38,49 +40,34 @@ def consequence(
     return (decided("matters", of, gain, decisions.MATTERS, outcome),)
 
 
-def without_idle(logs: FittedLogs, tried: Tried) -> tuple[Tried, tuple[Decision, ...]]:
-    """What was tried, without hypotheses one of whose effects predicts the logs hardly better than the likeliest of all without it; and the
-    rules.
+def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
+    """Nats by which the likeliest of what was tried, and parameters beyond their spread, predict the logs better than the plant alone, over
+    horizons from a row to a second (validate/score.py): a reading for each second, as those within share their errors.
 
-    What such an effect gains in nats it gains of the noise, or of what the others' forms are a little off: it says nothing of what it
-    stands beside. Where the plant's parameters leave their spread to take an effect's part, it is not idle.
+    What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off.
     """
-    asked, idle, rules = set[FittedHypothesis](), set[FittedHypothesis](), list[Decision]()
-    while (entry := _next(weigh(tried.without(idle)), asked)) is not None:
-        asked.add(entry)
-        fewer = _one_less(entry, tried.named)
-        if fewer is None:
-            continue
-        rule, matters = _matters(logs, tried, entry, fewer)
-        rules.append(rule)
-        idle |= set() if matters else {entry}
-    return tried.without(idle), tuple(rules)
+    asked = sorted(tried.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
+    asked += [] if tried.beyond is None else [tried.beyond]
+    plain, seconds = tried.nominal.fit.hypothesis, logs.seconds
+    gains = thread_map(lambda entry: logs.gain(entry.fit.hypothesis, plain), asked)
+    return {entry: seconds * gain for entry, gain in zip(asked, gains, strict=True)}
 
 
-def _matters(logs: FittedLogs, tried: Tried, entry: FittedHypothesis, fewer: FittedHypothesis) -> tuple[Decision, bool]:
-    """The rule that asks whether the effect that a hypothesis has beside a `fewer` one is not idle, and its answer."""
-    of, left = " + ".join(entry.effects), " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
-    bent = beyond_spread(fewer) - beyond_spread(entry)
-    if bent > decisions.TAKEN_IN:
-        return decided("parameters_instead", of, bent, decisions.TAKEN_IN, f"{left} matters"), True
-    gain = logs.gain(entry.fit.hypothesis, fewer.fit.hypothesis)
-    whole = logs.gain(entry.fit.hypothesis, tried.nominal.fit.hypothesis)
-    least = max(float(decisions.MATTERS), decisions.FORMS_OFF * whole)
-    outcome = f"{left} matters" if gain >= least else f"{left} is left out"
-    return held_against("each_matters", of, gain, least, "nats a reading", outcome), gain >= least
-
-
-def _next(weighed: Weighed, asked: Set[FittedHypothesis]) -> FittedHypothesis | None:
-    """The most probable that was not asked yet; None where all others hardly count."""
+def foreseen_rules(foretold: Mapping[FittedHypothesis, float], weighed: Weighed) -> tuple[Decision, ...]:
+    """The records of what the likely ones predict better, beside the likeliest."""
     shares = zip(weighed.fitted, weighed.probabilities, strict=True)
-    return next((one for one, p in shares if one not in asked and p >= decisions.LEAST_PREFERRED), None)
-
-
-def _one_less(entry: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> FittedHypothesis | None:
-    """The likeliest that was tried with all effects but one of it; None of a single effect."""
-    fewer = [
-        other
-        for other in tried
-        if len(other.effects) == len(entry.effects) - 1 > 0 and set(other.effects) < set(entry.effects)
-    ]
-    return max(fewer, key=lambda other: other.evidence, default=None)
+    likely = [entry for entry, p in shares if p >= TOLD_FROM and entry in foretold]
+    if not likely:
+        return ()
+    first = foretold[likely[0]]
+    return tuple(
+        held_against(
+            "foresees",
+            " + ".join(entry.effects),
+            foretold[entry],
+            first,
+            "nats",
+            "likelier" if foretold[entry] > first else "no likelier",
+        )
+        for entry in likely
+    )

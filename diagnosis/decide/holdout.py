@@ -1,6 +1,6 @@
 """What logs that were not fitted say: how much better what was found predicts them, as one number with its standard error."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.weighing import Weighed
-from diagnosis.decisions import decided, held_against
+from diagnosis.decisions import held_against
 from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
-from diagnosis.validate.prediction import predictions, windows
+from diagnosis.validate.prediction import predictions
 from diagnosis.validate.score import Errors, Score, errors_of, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.diagnosis import Shrinkage
@@ -133,27 +132,6 @@ def _outputs(case: Case) -> int:
     )
 
 
-def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Mapping[FittedHypothesis, float], tuple[Decision, ...]]:
-    """Nats by which these logs prefer each of the likely names to the likeliest, a reading for each second as those within share their
-    errors; and the rules. Nothing was fitted to these, so that no form a little off the truth gains there."""
-    shares = zip(weighed.fitted, weighed.probabilities, strict=True)
-    likely = [entry for entry, p in shares if p >= decisions.LEAST_PREFERRED][: decisions.PREFERRED]
-    if len(likely) < 2:
-        return {}, ()
-    told = {entry: holdout.score_of_plant(entry.fit.hypothesis).gain for entry in likely}
-    seconds = sum(len(windows(flight.log.t_s)) for flight in holdout.case.flights)
-    first = told[likely[0]]
-    rules = tuple(
-        held_against("hold_out_prefers", " + ".join(entry.effects), gain, first, NATS, _than(gain, first))
-        for entry, gain in list(told.items())[1:]
-    )
-    return {entry: seconds * (gain - first) for entry, gain in told.items()}, rules
-
-
-def _than(gain: float, first: float) -> str:
-    return "likelier" if gain > first else "less likely"
-
-
 def is_surely_better(told: Score) -> bool:
     """Whether a difference of predictions is more than chance makes."""
     return told.gain > decisions.SURELY * told.sd
@@ -173,25 +151,17 @@ def surely_better(holdout: Holdout, tried: Sequence[FittedHypothesis]) -> tuple[
 def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note, ...], tuple[Decision, ...]]:
     """What the logs say of a hypothesis, what is to be told of that, and its records."""
     told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
-    outcome = "surely better" if is_surely_better(told) else "not surely better"
-    notes: tuple[Note, ...] = ()
-    if is_surely_better(told) and favour(told) < decisions.NO_FAVOUR:
-        shares = {"gain_nats": told.gain / _outputs(holdout.case), "left_nats": told.misfit / _outputs(holdout.case)}
-        notes = (Note("something_else_missing", of, shares),)
-    return (
-        told,
-        notes,
-        (
-            held_against("hold_out_gain", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),
-            decided(
-                "hold_out_favour",
-                of,
-                favour(told),
-                decisions.NO_FAVOUR,
-                "for it" if favour(told) > 0.0 else "against it",
-            ),
-        ),
+    sure, left = is_surely_better(told), max(told.misfit, 0.0)
+    missing = sure and left > told.gain
+    outcome, further = "surely better" if sure else "not surely better", "something else is missing"
+    rules = (
+        held_against("hold_out_gain", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),
+        held_against("hold_out_left", of, left, told.gain, NATS, further if missing else "no objection"),
     )
+    if not missing:
+        return told, (), rules
+    shares = {"gain_nats": told.gain / _outputs(holdout.case), "left_nats": told.misfit / _outputs(holdout.case)}
+    return told, (Note("something_else_missing", of, shares),), rules
 
 
 def favour(told: Score) -> float:

@@ -1,8 +1,8 @@
 """From evidence to probabilities that come true: hypotheses compared by a law that was learned (records/model_comparison.py)."""
 
 import json
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 
@@ -59,26 +59,14 @@ class Weighed:
 @dataclass(frozen=True, eq=False)
 class Tried:
     """All that may explain a gap: hypotheses with effects, the plant without any, what forms still gain beside the best of them in nats,
-    and the evidence of parameters beyond their spread alone (None: there are none)."""
+    and parameters beyond their spread alone with their evidence (None: there are none)."""
 
     named: tuple[FittedHypothesis, ...]
     nominal: FittedHypothesis
     library: EffectLibrary
     left_nats: float
+    beyond: FittedHypothesis | None = None
     retune: float | None = None
-
-    def without(self, dropped: Collection[FittedHypothesis]) -> "Tried":
-        """The same without some hypotheses."""
-        return replace(self, named=tuple(entry for entry in self.named if entry not in dropped))
-
-
-@dataclass(frozen=True)
-class Foretold:
-    """What logs that were not fitted say: nats by which they prefer each hypothesis that they were asked of to the likeliest without them,
-    and what speaks for the first (-1 to 1; None: nothing was asked)."""
-
-    nats: Mapping[FittedHypothesis, float] = field(default_factory=dict)
-    favour: float | None = None
 
 
 @cache
@@ -87,10 +75,16 @@ def learned() -> ComparisonLaw:
     return law_of(json.loads(files("diagnosis.decide").joinpath("comparison.json").read_text(encoding="utf-8"))["law"])
 
 
-def weigh(tried: Tried, foretold: Foretold | None = None, law: ComparisonLaw | None = None) -> Weighed:
-    """Probabilities of all that was tried, given that there is a gap."""
-    known, learnt = foretold or Foretold(), learned() if law is None else law
-    told = _comparison(tried, known)
+def weigh(
+    tried: Tried,
+    ahead: Mapping[FittedHypothesis, float],
+    favour: float | None = None,
+    law: ComparisonLaw | None = None,
+) -> Weighed:
+    """Probabilities of all that was tried, given that there is a gap; `ahead` are the nats by which what was asked predicts the logs better
+    than the plant alone: what was not asked does so as little as any. `favour` is what logs that were not fitted say of the first."""
+    learnt = learned() if law is None else law
+    told = replace(_comparison(tried, ahead), favour=favour)
     shares, explained = learnt.shares(told), learnt.explained(told)
     order = np.argsort(-shares[:-1], kind="stable")[:RANKED].tolist()
     first = likeliest_of(told, shares)
@@ -108,7 +102,8 @@ def weigh(tried: Tried, foretold: Foretold | None = None, law: ComparisonLaw | N
     )
 
 
-def _comparison(tried: Tried, foretold: Foretold) -> ModelComparison:
+def _comparison(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> ModelComparison:
+    least = min(ahead.values(), default=0.0)
     nominal, effects = tried.nominal, tried.library.effects
     first = max(tried.named, key=lambda entry: entry.evidence, default=nominal)
     best = first.evidence if tried.retune is None else max(first.evidence, tried.retune)
@@ -118,15 +113,15 @@ def _comparison(tried: Tried, foretold: Foretold) -> ModelComparison:
                 " + ".join(entry.effects),
                 entry.evidence - nominal.evidence,
                 prior_odds(entry, effects, tried.library.frictionless, tried.library.steps) - beyond_spread(entry),
-                foretold.nats.get(entry, 0.0),
+                ahead.get(entry, least),
             )
             for entry in tried.named
         ),
         gain_nats=max(best - nominal.evidence, 0.0),
         formed_nats=max(first.evidence - _read_off(tried, first).evidence, 0.0),
         left_nats=tried.left_nats,
-        favour=foretold.favour,
         parameters_nats=None if tried.retune is None else tried.retune - nominal.evidence,
+        parameters_ahead_nats=0.0 if tried.beyond is None else ahead.get(tried.beyond, least),
     )
 
 

@@ -173,9 +173,7 @@ def beam_of(
     likeliest = max(ranked, key=lambda entry: entry.fit.log_likelihood, default=None)
     if likeliest is None:
         return []
-    near = ranked[0].evidence - max(
-        decisions.NEAR_BEST, decisions.CLOSE_PAIR_SHARE * (ranked[0].evidence - nominal.evidence)
-    )
+    near = _near(ranked[0], nominal)
     kept: list[FittedHypothesis] = []
     for entry in ranked:
         if len(kept) == count or (len(entry.effects) > 1 and entry.evidence <= near):
@@ -198,7 +196,7 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     """Once more the best of all with the twins of the first, until effects and all noise agree: a fit not yet at its end would lose to one
     with an idle effect. What is far from the best is left as it is."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
-    best = [entry for entry in best if _within_reach(entry, best[0], nominal)]
+    best = [entry for entry in best if entry.evidence > _near(best[0], nominal)]
     twins = [entry for entry in best if is_twin(case, entry, best[0])]
     asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.SETTLED_FITS], *twins])]
     for step in (refined, once_more, with_own_events):
@@ -207,10 +205,9 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     keep_better(found, with_noise_beside(case, [entry for entry in found.values() if _certain(entry, found)]))
 
 
-def _within_reach(fitted: FittedHypothesis, best: FittedHypothesis, nominal: FittedHypothesis) -> bool:
-    """Whether a better fit may bring a hypothesis to the best: near it, or with a good share of its gain."""
-    short, gain = best.evidence - fitted.evidence, best.evidence - nominal.evidence
-    return short <= max(decisions.NEAR_BEST, (1.0 - decisions.WORTH_REFINING) * gain)
+def _near(best: FittedHypothesis, nominal: FittedHypothesis) -> float:
+    """The evidence above which a hypothesis may yet become the best: of 115 ends that were settled none came from further."""
+    return best.evidence - max(decisions.NEAR_BEST, decisions.CLOSE_PAIR_SHARE * (best.evidence - nominal.evidence))
 
 
 def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy
-from diagnosis.validate.prediction import predictions
+from diagnosis.validate.prediction import predictions, windows
 from diagnosis.validate.score import Errors, errors_of, score
 
 Array = NDArray[np.float64]
@@ -24,6 +24,11 @@ class FittedLogs:
         """By how many nats a reading `one` predicts these logs better than `other` (score.py), each under its own noise or under that of
         the other, whichever predicts better: noise is not what is asked."""
         return score(self._better(one, other), self._better(other, one)).gain
+
+    @property
+    def seconds(self) -> int:
+        """How many windows of a second the logs have."""
+        return sum(len(windows(flight.log.t_s)) for flight in self.case.flights)
 
     def errors(self, hypothesis: Hypothesis) -> Errors:
         """The errors of its predictions."""

@@ -11,12 +11,11 @@ LAW = ComparisonLaw(
     size=np.log(2.0),
     power=0.5,
     further=2.0,
-    hold_out=0.5,
+    ahead=0.5,
     intercept=1.0,
     left=-1.0,
     gain=0.5,
     favour=2.0,
-    several=-0.3,
     partly_single=0.1,
     partly_several=0.8,
 )
@@ -29,25 +28,26 @@ def test_evidence_counts_by_a_scale_that_grows_with_what_forms_explain() -> None
     assert LAW.scale_nats(0.0) == pytest.approx(2.0)
 
 
-def test_shares_are_a_softmax_of_evidence_prior_further_effects_and_hold_out() -> None:
-    # Truth by hand: 90 / 20 = 4.5 against 99 / 20 - 1 - 2 + 0.5 x 4 = 3.95; then parameters with 60 / 20 = 3 beside them.
+def test_shares_are_a_softmax_of_evidence_prior_further_effects_and_what_is_foreseen() -> None:
+    # Truth by hand: 90 / 20 = 4.5 against 99 / 20 - 1 - 2 + 0.5 x 4 = 3.95; then parameters with 60 / 20 - 0.5 = 2.5 beside them.
     expected = np.exp([4.5, 3.95, -np.inf])
     assert LAW.shares(TOLD) == pytest.approx(expected / expected.sum())
-    beside = np.exp([4.5, 3.95, 3.0])
-    assert LAW.shares(replace(TOLD, parameters_nats=60.0)) == pytest.approx(beside / beside.sum())
+    beside = np.exp([4.5, 3.95, 3.0 - 0.5])
+    told = replace(TOLD, parameters_nats=60.0, parameters_ahead_nats=-1.0)
+    assert LAW.shares(told) == pytest.approx(beside / beside.sum())
 
 
 def test_whether_anything_explains_is_a_logistic_law_of_what_is_left() -> None:
-    # Truth by hand: the first gains 90 of 99 nats, and 9 + 9 are left beside it; 0.3 less where it is of several effects.
+    # Truth by hand: the first gains 90 of 99 nats, and 9 + 9 are left beside it.
     z = 1.0 - np.log(19.0) + 0.5 * np.log(91.0) + 2.0 * 0.25
     assert LAW.explained(TOLD) == pytest.approx(1.0 / (1.0 + np.exp(-z)))
     joint = replace(TOLD, candidates=(replace(ONE, evidence_nats=0.0), TWO))
-    z = 1.0 - np.log(10.0) + 0.5 * np.log(100.0) + 2.0 * 0.25 - 0.3
+    z = 1.0 - np.log(10.0) + 0.5 * np.log(100.0) + 2.0 * 0.25
     assert LAW.explained(joint) == pytest.approx(1.0 / (1.0 + np.exp(-z)))
-    assert features(TOLD, np.array([0.6, 0.4, 0.0])) == pytest.approx((np.log(19.0), np.log(91.0), 0.25, 0.0))
-    assert features(replace(TOLD, favour=None), np.array([0.4, 0.6, 0.0]))[2:] == (0.0, 1.0)
+    assert features(TOLD, np.array([0.6, 0.4, 0.0])) == pytest.approx((np.log(19.0), np.log(91.0), 0.25))
+    assert features(replace(TOLD, favour=None), np.array([0.4, 0.6, 0.0]))[2:] == (0.0,)
     parameters = features(replace(TOLD, parameters_nats=60.0), np.array([0.2, 0.2, 0.6]))
-    assert parameters == pytest.approx((np.log(49.0), np.log(61.0), 0.25, 0.0))
+    assert parameters == pytest.approx((np.log(49.0), np.log(61.0), 0.25))
 
 
 def test_where_nothing_was_tried_nothing_explains() -> None:

@@ -1,12 +1,10 @@
 """A gap matters by what its explanation predicts, not by how certain many rows make it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.consequence import consequence, without_idle
+from diagnosis.decide.consequence import consequence, foreseen, foreseen_rules
 from diagnosis.decide.weighing import Tried, Weighed
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
@@ -58,57 +56,28 @@ def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesi
     return as_fitted(case, ended)
 
 
-def surely(fitted: FittedHypothesis) -> FittedHypothesis:
-    """The same so likely that it is asked what it predicts, whatever a further effect costs by the learned law."""
-    return replace(fitted, evidence=fitted.evidence + 1e4)
-
-
-def test_an_effect_that_predicts_no_better_is_left_out_and_one_that_does_stays() -> None:
-    # Truth: dry friction and a scale of the sensor that is off by a thousandth, which no prediction shows.
+def test_what_is_there_predicts_the_logs_better_and_what_is_idle_does_not() -> None:
+    # Truth: 0.4 mN m of dry friction; a scale of the sensor that is off by a thousandth, which no prediction shows.
     rub, idle = {"arm.coulomb": {"b": 4e-4}}, {"theta_sensor.scale": {"scale": 1.001}}
     case = arm_case(arm_log({**rub, **idle}, seed=76))
-    both, alone, other = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle))
-    both = surely(both)
-    tried = Tried((both, alone), settled(case, {}), case.library, 5.0)
+    both, alone, other, plain = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle, {}))
     logs = FittedLogs(case)
-    found, (rule,) = without_idle(logs, tried)
-    assert [entry.effects for entry in found.named] == [("arm.coulomb",)]
-    assert rule.value is not None
-    assert rule.value < 0.05
-    # Where nothing else was tried with one effect less, the friction would be missed.
-    kept, rules = without_idle(logs, replace(tried, named=(other, both)))
-    assert kept.named == (other, both)
-    assert [one.outcome for one in rules] == ["arm.coulomb matters"]
+    found = foreseen(logs, Tried((both, alone, other), plain, case.library, 5.0))
+    assert found[alone] > 0.3 * logs.seconds
+    assert found[other] < 0.1 * found[alone]
+    assert abs(found[both] - found[alone]) < decisions.MATTERS * logs.seconds
 
 
-def test_an_effect_that_does_a_small_part_of_what_its_fellow_does_is_left_out() -> None:
-    # Truth: dry friction of 0.4 mN m and a thirteenth of that as a constant force: certain, and less than friction's form may be off.
-    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
+def test_a_second_effect_predicts_what_the_first_leaves() -> None:
+    # Truth: dry friction and a constant force of half of it.
+    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 2e-4}}
     case = arm_case(arm_log({**rub, **pull}, seed=76))
     both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
-    both = surely(both)
-    found, (rule,) = without_idle(FittedLogs(case), Tried((both, alone), plain, case.library, 5.0))
-    assert found.named == (alone,)
-    assert rule.value is not None
-    assert rule.limit is not None
-    assert decisions.MATTERS < rule.value < rule.limit
-    # Beside a plant that predicts as well but for the force it is all that there is.
-    found, _ = without_idle(FittedLogs(case), Tried((both, alone), alone, case.library, 5.0))
-    assert found.named == (both, alone)
-
-
-def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_idle() -> None:
-    # Truth: the same small force. Without it a parameter stands nine standard deviations from its file, which costs 18 nats.
-    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
-    case = arm_case(arm_log({**rub, **pull}, seed=76))
-    both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
-    theta = alone.fit.hypothesis.theta.copy()
-    theta[0] = 9.0
-    bent = replace(alone, fit=replace(alone.fit, hypothesis=replace(alone.fit.hypothesis, theta=theta)))
-    both = surely(both)
-    found, rules = without_idle(FittedLogs(case), Tried((both, bent), plain, case.library, 5.0))
-    assert found.named == (both, bent)
-    assert [(rule.rule, rule.value) for rule in rules] == [("parameters_instead", pytest.approx(18.0))]
+    found = foreseen(logs := FittedLogs(case), Tried((alone, both), plain, case.library, 5.0))
+    assert found[both] - found[alone] > decisions.MATTERS * logs.seconds
+    weighed = Weighed((both, alone), (0.6, 0.01), 0.39, 0.0, 1.0)
+    (rule,) = foreseen_rules(found, weighed)  # what is unlikely is not told
+    assert (rule.of, rule.value) == ("arm.coulomb + arm.offset_force", pytest.approx(found[both]))
 
 
 @pytest.mark.parametrize("moved", [False, True])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred, surely_better
-from diagnosis.decide.weighing import Foretold, Tried, Weighed, weigh
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, surely_better
+from diagnosis.decide.weighing import Tried, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
 from diagnosis.detect.linearisation import Scores
@@ -24,7 +24,7 @@ from diagnosis.validate.score import Score
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
-from tests.diagnosis.arm import SECONDS, arm, arm_case, arm_log
+from tests.diagnosis.arm import arm, arm_case, arm_log
 from tests.diagnosis.conftest import Fly
 
 TWO_SD = 1.1  # times J_A, which its file states to 5 %
@@ -132,7 +132,7 @@ def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     detection = Detection(1e-9, Tail(5.0, 1.0), 30.0, False, FormScores((), empty, np.zeros(0)))
     seen = Seen(case, None, plain, object(), (), None, detection)  # type: ignore[arg-type]
     told, notes, _ = asked(other, found)
-    weighed = weigh(Tried((replace(found, evidence=30.0),), plain, case.library, 20.0), Foretold(favour=favour(told)))
+    weighed = weigh(Tried((replace(found, evidence=30.0),), plain, case.library, 20.0), {}, favour(told))
     assert weighed.probabilities[0] < 0.5
     for p, sure in ((1e-9, True), (1e-4, False)):
         after, stands = borne_out(replace(seen, detection=replace(detection, p=p)), weighed)
@@ -201,29 +201,6 @@ def test_steps_that_the_readings_lie_on_are_likelier_by_their_log() -> None:
     _, holdout = judged(arm_log({"theta_sensor.quantization": {"q": coarse}}, seed=37))
     told = holdout.score(supposing({"theta_sensor.quantization": {"q": coarse}}).fit.hypothesis)
     assert told.gain == pytest.approx(np.log(coarse / step), abs=0.05)
-
-
-def test_of_two_names_the_one_that_predicts_better_is_preferred_by_its_nats_a_second() -> None:
-    _, holdout = judged(arm_log(RUB, seed=38))
-    wrong, right = supposing({"arm.quadratic_drag": {"c": 1e-6}}), rubbing()
-    nats, (rule,) = preferred(holdout, Weighed((wrong, right), (0.5, 0.4), 0.1, 0.0, 10.0))
-    gains = [holdout.score(entry.fit.hypothesis).gain for entry in (wrong, right)]
-    assert nats[wrong] == 0.0
-    assert nats[right] == pytest.approx(SECONDS * (gains[1] - gains[0]), rel=0.1)
-    assert nats[right] > 3.0
-    assert (rule.of, rule.outcome) == ("arm.coulomb", "likelier")
-    assert preferred(holdout, Weighed((wrong, right), (0.9, 0.0), 0.1, 0.0, 10.0)) == (
-        {},
-        (),
-    )  # nothing to be told apart
-
-
-def test_names_that_predict_alike_are_not_preferred() -> None:
-    # Truth: neither rub nor drag shows in these logs, so that one predicts as the other.
-    _, holdout = judged(arm_log(seed=38))
-    alike = (supposing({"arm.quadratic_drag": {"c": 1e-12}}), supposing({"arm.coulomb": {"b": 1e-12}}))
-    nats, _ = preferred(holdout, Weighed(alike, (0.5, 0.4), 0.1, 0.0, 10.0))
-    assert tuple(nats.values()) == pytest.approx((0.0, 0.0), abs=0.1)
 
 
 def test_the_plant_as_stated_is_what_is_judged_against_where_it_surely_predicts_better() -> None:
