@@ -9,7 +9,7 @@ from records.text.units import dimension
 
 # As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
 TIME_NAMES = frozenset(
-    "t time times tout timestamp timestamps time_stamp stamp elapsed elapsed_time datenum zeit temps tiempo tempo".split()  # noqa: SIM905
+    "t ts time times tout epoch timestamp timestamps time_stamp stamp elapsed elapsed_time datenum zeit temps tiempo tempo".split()  # noqa: SIM905
 )
 
 

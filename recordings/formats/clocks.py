@@ -78,7 +78,7 @@ def _rises_in_time(signal: Signal) -> bool:
 
 def is_time_name(name: str) -> bool:
     """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `TimeMs`, `t_s`, `millis`."""
-    last = re.split(r"[./]", name)[-1].strip("_")
+    last = re.split(r"[./:]", name)[-1].strip("_")
     if unit_of_clock(last.lower()):
         return True
     if last.endswith(("]", ")")):  # one of many

@@ -19,6 +19,7 @@ from recordings.signals import Contents
 from records.errors import BadInput
 
 _UNITS = ("unit", "units", "Unit", "Units")
+OCTAVE = b"# Created by Octave"  # in which it saves where it is not told otherwise
 _LABELS = ("label", "Name", "name")  # of a scope's signal, and of a timeseries
 
 
@@ -55,8 +56,13 @@ def _content(path: Path) -> dict[str, Any]:
     try:
         with path.open("rb") as stream, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of variables that it cannot read, which are told by name
-            if stream.read(8) == b"\x89HDF\r\n\x1a\n":
+            start = stream.read(len(OCTAVE))
+            if start.startswith(b"\x89HDF\r\n\x1a\n"):
                 return hdf5.content(path)
+            if start == OCTAVE:
+                raise BadInput(
+                    "MATLAB file", str(path), "Octave's own text", "a .mat file", "save it in Octave with save -v7"
+                )
             stream.seek(0)
             content = loadmat(stream, simplify_cells=True)
     except NotImplementedError:

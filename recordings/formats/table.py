@@ -1,7 +1,7 @@
 """The file formats, a row each: a new one is a file in this folder and a row here."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Protocol, cast
@@ -46,9 +46,43 @@ FORMATS: Mapping[tuple[str, ...], Format] = {
     (".parquet",): Format("parquet", "Parquet file", "pyarrow", "parquet", apart=True),
     (".mcap",): Format("mcap", "MCAP file", "mcap", "ros"),
     (".db3", ".bag"): Format("ros_bag", "ROS bag", "rosbags", "ros"),
+    (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods"): Format(
+        "spreadsheet", "workbook", "python_calamine", "excel", apart=True
+    ),
+    (".tdms",): Format("tdms", "TDMS file", "nptdms", "tdms"),
+}
+# What other programs write that is read nowhere but there, and what to type in them.
+_SIGNALS = (
+    "decode its frames with the bus's database and export the signals as CSV or MDF from the tool that recorded it"
+)
+_FLIGHT = "take one kind of message out of it: mavlogdump.py --types ATT --format csv LOG > att.csv"
+ELSEWHERE: Mapping[str, tuple[str, str]] = {
+    ".mldatx": (
+        "a session of Simulink's Data Inspector",
+        "in MATLAB Simulink.sdi.load('NAME.mldatx'); Simulink.sdi.exportRun(Simulink.sdi.getAllRunIDs, to='file', filename='log.xlsx')",
+    ),
+    ".fig": (
+        "a figure of MATLAB",
+        "in MATLAB get its lines' XData and YData, and save those with save('log.mat', ...)",
+    ),
+    ".slx": ("a model of Simulink", "simulate it, and save its logged signals"),
+    ".blf": ("frames of a CAN bus", _SIGNALS),
+    ".trc": ("frames of a CAN bus", _SIGNALS),
+    ".raw": ("results of a circuit simulation", "in LTspice: File, Export data as text"),
+    ".pkl": (
+        "Python's own objects, which may run what they hold",
+        "save arrays with numpy.savez, a table with to_parquet",
+    ),
+    ".bin": ("bytes of a kind that its name does not tell", f"of ArduPilot: {_FLIGHT}"),
+    ".tlog": ("telemetry of MAVLink", _FLIGHT),
+    ".bbl": ("a log of Betaflight", "blackbox_decode LOG.bbl, which writes a CSV"),
+    ".tdm": ("a DIAdem file", "save it as .tdms, or as CSV"),
+    ".7z": ("a packed file", "unpack it, or pack it as .zip or .gz"),
+    ".tar": ("a packed file", "unpack it, or pack it as .zip or .gz"),
 }
 _BY_SUFFIX = {suffix: entry for suffixes, entry in FORMATS.items() for suffix in suffixes}
 SUFFIXES = tuple(_BY_SUFFIX)
+PACKED = compressed.SUFFIXES
 
 
 def is_file(name: str) -> bool:
@@ -60,8 +94,13 @@ def is_file(name: str) -> bool:
 def read(path: Path, asked: TextLayout) -> Contents:
     """What the file at `path` holds; a folder is a ROS 2 bag. Raises BadInput, also for an ending that no row has."""
     suffix = ".db3" if path.is_dir() else path.suffix.lower()
-    if suffix == compressed.SUFFIX:
-        return compressed.read(path, lambda unpacked: read(unpacked, asked))
+    if suffix in PACKED:
+        return compressed.read(path, lambda unpacked: read(unpacked, asked), SUFFIXES)
+    if suffix in ELSEWHERE:
+        what, remedy = ELSEWHERE[suffix]
+        raise BadInput("file", str(path), what, "a file of signals", remedy)
+    if suffix not in _BY_SUFFIX and _is_text(path):
+        return _of_text(path, asked)
     if suffix not in _BY_SUFFIX:
         got = f"the ending {path.suffix!r}" if path.suffix else "a name without an ending"
         raise BadInput(
@@ -80,3 +119,19 @@ def read(path: Path, asked: TextLayout) -> Contents:
     if entry.apart:
         return apart.read(entry.module, path, entry.called)
     return cast(Reader, import_module(f"recordings.formats.{entry.module}")).read(path, asked)
+
+
+def _is_text(path: Path) -> bool:
+    """Whether a file under an ending of its own begins as text does: without a zero byte."""
+    try:
+        with path.open("rb") as stream:
+            start = stream.read(4096)
+    except OSError:
+        return False
+    return bool(start) and b"\0" not in start
+
+
+def _of_text(path: Path, asked: TextLayout) -> Contents:
+    contents: Contents = import_module("recordings.formats.text.delimited").read(path, asked)
+    told = f"the ending {path.suffix!r}" if path.suffix else "a name without an ending"
+    return replace(contents, found=(f"{told}: taken as a table of text", *contents.found))

@@ -1,9 +1,10 @@
 """The signal that is a column's without being told, and what is said where several are."""
 
+import re
 import shlex
 from collections.abc import Mapping
 
-from recordings.mapping.names import Ambiguous, find, without_device
+from recordings.mapping.names import PATH, Ambiguous, find, without_device
 from recordings.mapping.source import Source
 from recordings.signals import Signal
 from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
@@ -34,7 +35,7 @@ def ambiguous(several: Mapping[str, Ambiguous], of: Source) -> BadInput:
     name, error = next(iter(several.items()))
     first = max(error.candidates, key=lambda candidate: of.signals[candidate].values.shape[0])
     shown = "; ".join(" or ".join(_described(one, of) for one in found.candidates[:6]) for found in several.values())
-    group = first[: -len(name)].rstrip("./") if first.endswith(name) else ""
+    group = first[: -len(name)].rstrip(PATH) if first.endswith(name) else ""
     or_group = f", or --group {group.removeprefix('group')} for all" if group else ""
     remedy = f"say which: --column {shlex.quote(f'{name}={first}')}{or_group}"
     return BadInput(f"names {', '.join(several)}", of.where, f"several signals: {shown[:600]}", "one for each", remedy)
@@ -47,7 +48,7 @@ def _described(name: str, of: Source) -> str:
 
 def _base_in(name: str, signal: Signal, si: str) -> str | None:
     """The name of a signal without its unit, where that is one of `si`."""
-    last = without_device(name).split(".")[-1]
+    last = re.split(r"[.:]", without_device(name))[-1]
     suffix = suffix_of(last)
     unit = known(signal.unit) if signal.unit else (unit_of_suffix(suffix) if suffix else None)
     if unit is None or unit.si != si or signal.values.ndim != 1:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from recordings.signals import Signal
 
+PATH = "./:"  # between a name and what it lies in: a structure, a topic, PLECS' scope
+
 
 @dataclass(frozen=True)
 class Ambiguous(Exception):
@@ -31,7 +33,9 @@ def find(name: str, signals: Mapping[str, Signal], group: str | None = None) -> 
 
 def is_under(name: str, group: str) -> bool:
     """Whether a signal lies in a group: a structure, a topic, a group of channels by its number or name."""
-    return any(name.startswith(f"{start}{mark}") for start in (group, f"group{group}", f"/{group}") for mark in "./[(")
+    return any(
+        name.startswith(f"{start}{mark}") for start in (group, f"group{group}", f"/{group}") for mark in f"{PATH}[("
+    )
 
 
 def _candidates(name: str, signals: Mapping[str, Signal]) -> list[str]:
@@ -39,7 +43,7 @@ def _candidates(name: str, signals: Mapping[str, Signal]) -> list[str]:
     if headed:
         return headed
     plain = name.replace("(1)", "")  # of a structure that is the only one of its kind
-    endings = tuple(f"{mark}{plain}" for mark in "./")
+    endings = tuple(f"{mark}{plain}" for mark in PATH)
     for bare in (without_device, _without_instances):
         alike = [known for known in signals if bare(known) == plain or bare(known).endswith(endings)]
         if alike:

@@ -33,6 +33,8 @@ EXTRAS: Mapping[str, str] = {
     "px4": "import: PX4 logs",
     "parquet": "import: Parquet files",
     "ros": "import: MCAP and ROS bags",
+    "excel": "import: workbooks of Excel and OpenDocument",
+    "tdms": "import: LabVIEW's TDMS files",
     "cluster": "--cluster: sweeps on Dask",
     "cores": "verify --chip: the core of a chip that is not emulated",
     "proofs": "verify --proofs",

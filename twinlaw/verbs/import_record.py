@@ -163,7 +163,7 @@ def _said(chosen: argparse.Namespace) -> ColumnMapping:
 
 
 def _out(chosen: argparse.Namespace, name: str) -> Path:
-    out: Path = chosen.out or Path(f"{Path(name.removesuffix(compressed.SUFFIX)).stem}.csv")
+    out: Path = chosen.out or Path(f"{Path(compressed.without_suffix(name)).stem}.csv")
     options.demand_ending(out, ".csv")
     return out
 

@@ -32,10 +32,10 @@ _HEXADECIMAL = re.compile(r"0[xX][0-9a-fA-F]+")
 _INFINITE = re.compile(r"[+-]?(inf|infinity|1\.#inf|∞)", re.IGNORECASE)
 _CLOCK = re.compile(
     r"(?:[\w.,/ -]*[\w.][ T_-])?\s*(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,:]\d+)?))?\s*([AaPp][Mm])?"
-    r"(?:Z|[+-]\d{2}:?\d{2}| ?UTC| ?GMT| \d{4})?"
+    r"(?:Z|([+-]\d{2}):?(\d{2})| ?UTC| ?GMT| \d{4})?"
 )
-_BASIC = re.compile(r"\d{8}T(\d{2})(\d{2})(\d{2}(?:[.,]\d+)?)()(?:Z|[+-]\d{2}:?\d{2})?")  # ISO 8601 without signs
-_MINUTES = re.compile(r"()(\d{1,3}):(\d{2}[.,]\d+)()")  # 58:01.5, as spreadsheets show an hour's times
+_BASIC = re.compile(r"\d{8}T(\d{2})(\d{2})(\d{2}(?:[.,]\d+)?)()(?:Z|([+-]\d{2}):?(\d{2}))?")  # ISO 8601 without signs
+_MINUTES = re.compile(r"()(\d{1,3}):(\d{2}[.,]\d+)()()()")  # 58:01.5, as spreadsheets show an hour's times
 _WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?) ?([^\d\s.,eE+-]\S*)")
 DAY_S = 86400.0
 
@@ -72,6 +72,11 @@ def is_grouped(cell: str, decimal: str) -> bool:
     return match is not None and (match["sign"] not in DECIMALS or bool(match["more"]) or bool(match["part"]))
 
 
+def may_be_grouped(cell: str, decimal: str) -> bool:
+    """Whether a cell is no number but for thousands that stand apart: `1.234` where the comma is the decimal sign."""
+    return _NUMBER[decimal].fullmatch(cell) is None and _GROUPS[decimal].fullmatch(cell) is not None
+
+
 def without_groups(cell: str, decimal: str) -> str:
     """A number without the signs between its thousands; any other text as it is."""
     match = _GROUPS[decimal].fullmatch(cell)
@@ -87,14 +92,15 @@ def number_and_unit(cell: str, decimal: str) -> tuple[str, str] | None:
 
 
 def time_of_day_s(cell: str) -> float | None:
-    """Seconds since midnight of `17:22:44.123`, with or without a date before it; None for any other text."""
+    """Seconds since midnight of `17:22:44.123`, with or without a date before it, in UTC where it states how far it is off; else None."""
     forms = (_CLOCK, _MINUTES) if ":" in cell else (_BASIC,) if "T" in cell else ()
     match = next((match for form in forms if (match := form.fullmatch(cell))), None)
     if match is None:
         return None
-    hours, minutes, seconds, half = match.groups()
+    hours, minutes, seconds, half, off_h, off_min = match.groups()
     hour = int(hours) % 12 + (12 if half.lower() == "pm" else 0) if half else int(hours or 0)
-    return 3600.0 * hour + 60.0 * int(minutes) + float(re.sub("[,:]", ".", seconds or "0"))
+    off_s = 3600.0 * int(off_h) + (-60.0 if off_h.startswith("-") else 60.0) * int(off_min) if off_h else 0.0
+    return 3600.0 * hour + 60.0 * int(minutes) + float(re.sub("[,:]", ".", seconds or "0")) - off_s
 
 
 def from_the_first_s(times_s: Sequence[float]) -> Array:

@@ -3,7 +3,7 @@
 import io
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,22 +11,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recordings.formats.clocks import with_clocks, with_clocks_in_front
+from recordings.formats.text.above import COMMENTS
+from recordings.formats.text.body import without_headers, without_messages, without_text_below
 from recordings.formats.text.cells import (
     from_the_first_s,
-    is_grouped,
     is_missing,
-    is_number,
     number,
     number_and_unit,
     time_of_day_s,
-    without_groups,
 )
 from recordings.formats.text.decoding import decoded
 from recordings.formats.text.headings import name_and_unit
-from recordings.formats.text.layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, find_layout, split
+from recordings.formats.text.layout import Layout, find_layout
 from recordings.formats.text.lines import Line
 from recordings.formats.text.long_form import as_wide
 from recordings.formats.text.monitor import as_table
+from recordings.formats.text.others import demand_table
+from recordings.formats.text.splitting import SEPARATORS, split
+from recordings.formats.text.thousands import ungrouped
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal, counted
 from records.errors import BadInput
@@ -44,28 +46,49 @@ MOST_TEXT = (
 def read(path: Path, asked: TextLayout) -> Contents:
     """The columns of a table as signals; a row that is short, or a cell that is no number, is a fault of its row.
 
-    Raises BadInput for a file that is missing, no text, or holds no row of numbers.
+    Raises BadInput for a file that is missing, no text, text of another kind, or holds no row of numbers.
     """
     text, found = decoded(path)
-    if re.match(r"\s*\[?\s*\{\s*\"", text):
-        raise BadInput(
-            "text file", str(path), "JSON", "a table of text", "call it .json, or .jsonl with an object a line"
-        )
+    demand_table(text, str(path))
+    contents = of_text(text, asked, str(path))
+    return replace(contents, texts=_sidecar(path), found=(*found, *contents.found))
+
+
+def of_text(text: str, asked: TextLayout, where: str) -> Contents:
+    """The same of a text that is there already; `where` names its file. Raises BadInput where it holds no row of numbers."""
     lines, comments, said = _lines(text, asked.skip)
     if said and asked.separator is None:
         asked = replace(asked, separator=said)
     lines, monitored = as_table(lines)
-    layout = find_layout(lines, comments, asked, str(path))
+    layout = find_layout(lines, comments, asked, where)
     wide = as_wide(lines, layout)
     if wide is not None:
         lines, found_too = wide[0], (*layout.found, *wide[1])
-        layout = replace(find_layout(lines, [], TextLayout("tab", layout.decimal), str(path)), found=found_too)
-    body, left_out = _body(*_without_headers(lines, layout), layout)
-    _check_upright(body, layout, str(path))
-    told = (*found, *monitored, *layout.found, *_comments(comments), *left_out)
+        layout = replace(find_layout(lines, [], TextLayout("tab", layout.decimal), where), found=found_too)
+    lines = ungrouped(lines, layout.separator, layout.decimal) if layout.grouped else lines
+    rows, passed_over = without_messages(*without_headers(lines, layout), layout)
+    body, left_out = without_text_below(rows, passed_over, layout)
+    _check_upright(body, layout, where)
+    told = (*monitored, *layout.found, *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
     singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
-    return Contents(with_clocks(with_clocks_in_front(signals)), _sidecar(path), told, unread, singles=singles)
+    signals, turned = _oldest_first(with_clocks(with_clocks_in_front(signals)))
+    return Contents(signals, found=(*told, *turned), unread=unread, singles=singles)
+
+
+def _oldest_first(signals: Mapping[str, Signal]) -> tuple[dict[str, Signal], tuple[str, ...]]:
+    """The rows turned round where every clock falls all along, as data bases write the newest first, and what is said of it."""
+    clocks = [signals[name] for name in dict.fromkeys(signal.clock for signal in signals.values()) if name]
+    if not clocks or not all(c.values.size > 1 and bool(np.all(np.diff(c.values) < 0.0)) for c in clocks):
+        return dict(signals), ()
+    return {name: _turned(signal) for name, signal in signals.items()}, (
+        "the newest row stands first: rows are turned round",
+    )
+
+
+def _turned(signal: Signal) -> Signal:
+    last = signal.values.size - 1
+    return replace(signal, values=signal.values[::-1], faults={last - row: told for row, told in signal.faults.items()})
 
 
 def _check_upright(body: Sequence[Line], layout: Layout, where: str) -> None:
@@ -124,45 +147,6 @@ def _comments(comments: Sequence[Line]) -> tuple[str, ...]:
     return (f"{counted(len(comments), 'lines')} of comment",) if comments else ()
 
 
-def _without_headers(lines: Sequence[Line], layout: Layout) -> tuple[Sequence[Line], list[str]]:
-    """The lines below the header without it where it stands again, as files laid behind one another have it; and that it does."""
-    above = {line.text.strip() for line in lines[max(0, layout.first - 2) : layout.first]}
-    below = lines[layout.first :]
-    again = [line for line in below if line.text.strip() in above]
-    if not again:
-        return below, []
-    told = (
-        f"the header stands again in line {again[0].number}{' and later' if len(again) > 1 else ''}, and is passed over"
-    )
-    return [line for line in below if line.text.strip() not in above], [told]
-
-
-def _body(lines: Sequence[Line], told: list[str], layout: Layout) -> tuple[Sequence[Line], tuple[str, ...]]:
-    """The rows of numbers: a last row that was cut short, and text below the numbers, are left out and said; rows of nothing too."""
-    end = len(lines)
-    labelled = sum(_begins_with_text(line, layout) for line in lines[:SAMPLE_LINES]) > 0.5 * len(lines[:SAMPLE_LINES])
-    while end > 1 and (not _values(lines[end - 1], layout) or _begins_with_text(lines[end - 1], layout) > labelled):
-        end -= 1
-    if end < len(lines):
-        told.append(f"text below the numbers is left out, from line {lines[end].number} on: {lines[end].text[:40]!r}")
-    width, last = len(layout.headings), split(lines[end - 1].text, layout.separator)
-    if end > 2 and len(last) < width:
-        told.append(f"line {lines[end - 1].number}, the last, is cut short ({len(last)} cells of {width}) and left out")
-        end -= 1
-    return lines[:end], tuple(told)
-
-
-def _values(line: Line, layout: Layout) -> int:
-    """How many cells of a line are numbers or times of day."""
-    return sum(is_number(cell, layout.decimal) for cell in split(line.text, layout.separator))
-
-
-def _begins_with_text(line: Line, layout: Layout) -> bool:
-    """Whether the first cell of a line is neither a number nor says that there is none: `Max` of a summary."""
-    cell = split(line.text, layout.separator)[0]
-    return number(cell, layout.decimal) is None and not is_number(cell, layout.decimal)
-
-
 def _signals(lines: Sequence[Line], layout: Layout) -> tuple[dict[str, Signal], dict[str, str]]:
     """The columns of numbers, and of each other what stands in it first."""
     units = [unit or name_and_unit(heading)[1] for unit, heading in zip(layout.units, layout.headings, strict=True)]
@@ -182,7 +166,7 @@ def _signals(lines: Sequence[Line], layout: Layout) -> tuple[dict[str, Signal], 
 def _one_by_one(lines: Sequence[Line], layout: Layout) -> list[Signal | str]:
     """Each column cell by cell; a row of another width is a fault of all columns that it lacks, or of all where it is wider."""
     width = len(layout.headings)
-    rows = _ungrouped([split(line.text, layout.separator) for line in lines], layout.decimal)
+    rows = [split(line.text, layout.separator) for line in lines]
     filled = [(line, row) for line, row in zip(lines, rows, strict=True) if not all(map(is_missing, row))]
     short = [f"line {line.number}: {len(row)} cells of {width}, {layout.found[0]}" for line, row in filled]
     whole = [[] if any(row[width:]) else row for _, row in filled]
@@ -192,13 +176,6 @@ def _one_by_one(lines: Sequence[Line], layout: Layout) -> list[Signal | str]:
         )
         for place in range(width)
     ]
-
-
-def _ungrouped(rows: list[list[str]], decimal: str) -> list[list[str]]:
-    """The rows, where any number has its thousands apart, without the signs between them: `1.234` beside `4.946,04` is 1234."""
-    if not any(is_grouped(cell, decimal) for row in rows for cell in row):
-        return rows
-    return [[without_groups(cell, decimal) for cell in row] for row in rows]
 
 
 def _names(headings: Sequence[str]) -> list[str]:

@@ -5,7 +5,8 @@ import re
 from recordings.units import known
 
 _BRACKETED = re.compile(r"(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*")
-_BARE = re.compile(r"(?P<name>.*?)\s*(?:,|/|:|\bin\b)\s*(?P<unit>[^\s,/:].*)")
+_SIGN = re.compile(r"\s*(?:,|/|:|\bin\b)\s*(?=[^\s,/:])")  # in front of a unit that stands without brackets
+TIME = "time"  # the name of a heading that is a unit of time and nothing else, `in s`
 
 
 def name_and_unit(heading: str) -> tuple[str, str]:
@@ -13,7 +14,9 @@ def name_and_unit(heading: str) -> tuple[str, str]:
     match = _BRACKETED.fullmatch(heading)
     if match and match["name"] and (known(match["unit"]) or re.search(r"\[[^\]]+\]\s*$", heading)):
         return match["name"], match["unit"].strip()
-    match = _BARE.fullmatch(heading)
-    if match and match["name"] and known(match["unit"]):
-        return match["name"], match["unit"].strip()
+    for sign in _SIGN.finditer(heading):
+        name, unit = heading[: sign.start()], heading[sign.end() :].strip()
+        found = known(unit)
+        if found and (name or found.si == "s"):
+            return name or TIME, unit
     return heading, ""

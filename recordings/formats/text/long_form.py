@@ -7,8 +7,9 @@ from itertools import pairwise
 from recordings.formats.clocks import is_time_name
 from recordings.formats.text.cells import is_missing, is_number
 from recordings.formats.text.headings import name_and_unit
-from recordings.formats.text.layout import SAMPLE_LINES, Layout, split
+from recordings.formats.text.layout import SAMPLE_LINES, Layout
 from recordings.formats.text.lines import Line
+from recordings.formats.text.splitting import split
 
 COLUMNS = 3  # a time, a name, a value
 MOST = 0.9  # of a column's cells are words where it is one of names

@@ -11,15 +11,24 @@ FEWEST_PAIRS = 2  # of name and number in a line: one may stand in any sentence
 SAMPLE_LINES = 400  # of which most must be: as for the layout of a table
 TIME = "time"  # the heading of stamps
 _STAMP = r"(?:[\d./-]{8,10}[ T])?\d{1,2}:\d\d:\d\d(?:[.,:]\d+)?|\d+(?:\.\d+)?"
-_STAMPED = re.compile(rf"(?:\[(?P<within>{_STAMP})\]\s*(?:->|:)?|(?P<before>{_STAMP})\s*->)\s*(?P<rest>\S.*)")
+_STAMPED = re.compile(
+    rf"(?:\[\s*(?P<within>{_STAMP})\]\s*(?:->|:)?|(?P<before>{_STAMP})\s*->|[EWIDV] \((?P<idf_ms>\d+)\) [\w.-]+:)\s*(?P<rest>\S.*)"
+)  # the last as ESP-IDF logs: level, milliseconds since the start, whose line it is
 _PAIR = re.compile(
     r"(?<![\w.])(?P<name>[A-Za-z_][\w./\[\]]*)\s*[:=]\s*(?P<value>[+-]?(?:\d|\.\d|nan|inf)[^\s,;|]*)", re.I
+)
+_BRACKETED = re.compile(r"[\[({]+(?P<list>[^\[\](){}]*\d[^\[\](){}]*)[\])}]+[,;]?|(?P<row>[^;]*\d[^;\d]?);")
+_PLOTTED = re.compile(
+    r">(?P<name>[^:;|>]+):(?:(?P<time>\d+(?:\.\d+)?):)?(?P<value>[+-]?[\d.]+(?:[eE][+-]?\d+)?)(?:§[^|]*)?(?:\|\w*)?"
 )
 
 
 def as_table(lines: Sequence[Line]) -> tuple[list[Line], tuple[str, ...]]:
     """The lines as those of a table, where most of them are written so, and what is to be said of it; else as they are."""
-    plain, stamped = _without_stamps(lines)
+    plot = _as_plot(lines)
+    if plot is not None:
+        return plot, ("a signal a line, as Teleplot takes it",)
+    plain, stamped = _without_stamps(_without_brackets(lines))
     table, named = _without_names(plain)
     return table, (*stamped, *named)
 
@@ -28,6 +37,36 @@ def _are_most(lines: Sequence[Line], is_so: Callable[[str], bool]) -> bool:
     """Whether most of the first lines are written so."""
     sample = lines[:SAMPLE_LINES]
     return bool(sample) and sum(is_so(line.text) for line in sample) >= MOST * len(sample)
+
+
+def _as_plot(lines: Sequence[Line]) -> list[Line] | None:
+    """Lines `>name:value` as rows that begin with the first name, `>name:time_ms:value` as rows of time, name and value; None for others.
+
+    Format: Teleplot, "Telemetry format"; of a line that sends several, parted by semicolons, and of texts nothing is read.
+    """
+    if not _are_most(lines, lambda text: _PLOTTED.fullmatch(text.strip()) is not None):
+        return None
+    found = [(line, match) for line in lines if (match := _PLOTTED.fullmatch(line.text.strip()))]
+    if all(match["time"] for _, match in found):
+        rows = [replace(line, text="\t".join(match.group("time", "name", "value"))) for line, match in found]
+        return [replace(rows[0], text="time_ms\tname\tvalue"), *rows]
+    names = list(dict.fromkeys(match["name"] for _, match in found))
+    rows = [replace(found[0][0], text="\t".join(names))]
+    values: dict[str, str] = {}
+    for line, match in found:
+        if match["name"] in values:
+            rows.append(replace(line, text="\t".join(values.get(name, "") for name in names)))
+            values = {}
+        values[match["name"]] = match["value"]
+    return [*rows, replace(found[-1][0], text="\t".join(values.get(name, "") for name in names))]
+
+
+def _without_brackets(lines: Sequence[Line]) -> Sequence[Line]:
+    """The rows without what a program that prints a list or a matrix writes around each: `[0.1, 5.0],` or `0.1 5.0;`."""
+    if not _are_most(lines, lambda text: _BRACKETED.fullmatch(text.strip()) is not None):
+        return lines
+    found = [(line, _BRACKETED.fullmatch(line.text.strip())) for line in lines]
+    return [replace(line, text=match["list"] or match["row"]) if match else line for line, match in found]
 
 
 def _without_stamps(lines: Sequence[Line]) -> tuple[list[Line], tuple[str, ...]]:
@@ -43,7 +82,8 @@ def _without_stamps(lines: Sequence[Line]) -> tuple[list[Line], tuple[str, ...]]
 def _with_cell(match: re.Match[str]) -> str:
     rest = match["rest"]
     sign = next((sign for sign in ";\t,|" if sign in rest), " ")
-    stamp = (match["within"] or match["before"]).replace(" ", "T")
+    ms = match["idf_ms"]
+    stamp = f"{int(ms) / 1000.0:g}" if ms else (match["within"] or match["before"]).replace(" ", "T")
     return f"{TIME if re.match(r'[A-Za-z_]', rest) and not _PAIR.match(rest) else stamp}{sign}{rest}"
 
 

@@ -224,5 +224,6 @@ def test_the_extras_of_the_table_are_declared_installed_for_the_tests_and_known_
     assert set(re.findall(r"\w+", declared["logs"][0])) == {"twinlaw", "matlab", *extras}
     assert "twinlaw[cores,logs]" in declared["test"]
     for _, entry in NEEDING:
-        assert any(requirement.startswith(entry.package or "?") for requirement in declared[entry.extra])
+        named = [requirement.lower().replace("-", "_") for requirement in declared[entry.extra]]
+        assert any(requirement.startswith(entry.package or "?") for requirement in named)
     assert extras <= set(EXTRAS)

@@ -147,8 +147,8 @@ def test_on_a_terminal_the_signals_are_shown_and_the_command_that_is_proposed_wo
 
 
 def test_an_unknown_ending_is_told_with_those_that_are_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "run.xlsx").write_bytes(b"PK")
-    assert main(["import", str(tmp_path / "run.xlsx")]) == 2
+    (tmp_path / "run.dlis").write_bytes(b"\0")
+    assert main(["import", str(tmp_path / "run.dlis")]) == 2
     assert ".csv" in capsys.readouterr().err
 
 
