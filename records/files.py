@@ -3,7 +3,7 @@
 import errno
 import os
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from records.errors import BadInput
@@ -14,22 +14,35 @@ def write_atomic(path: Path, content: str | bytes) -> None:
 
     Raises BadInput when the folder cannot be made or written.
     """
-    data = content.encode("utf-8") if isinstance(content, str) else content
+    write_together({path: content})
+
+
+def write_together(contents: Mapping[Path, str | bytes]) -> None:
+    """Write files that belong together: none takes its place before all are written, so that no new one stands beside an old.
+
+    Raises BadInput when a folder cannot be made or written.
+    """
+    written: dict[Path, Path] = {}
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        for path, content in contents.items():
+            _write_beside(path, content, written)
+        for path, temporary in written.items():
+            temporary.replace(path)
     except OSError as error:
         raise _unwritable(path, error) from error
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except BaseException as error:  # Ctrl-C too must leave nothing beside it
-        Path(name).unlink(missing_ok=True)
-        if isinstance(error, OSError):
-            raise _unwritable(path, error) from error
-        raise
+    finally:  # Ctrl-C too must leave nothing beside them
+        for temporary in written.values():
+            temporary.unlink(missing_ok=True)
+
+
+def _write_beside(path: Path, content: str | bytes, written: dict[Path, Path]) -> None:
+    """Write `content` to a temporary file in the folder of `path`, which is noted before anything can go wrong with it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    written[path] = Path(name)
+    with os.fdopen(handle, "wb") as stream:
+        stream.write(content.encode("utf-8") if isinstance(content, str) else content)
+    Path(name).chmod(0o644)
 
 
 def demand_writable(path: Path) -> None:

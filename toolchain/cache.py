@@ -1,9 +1,14 @@
 """Where all that can be made again is kept."""
 
 import os
+import shutil
 import struct
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+
+DEEPEST = 2  # of a cache's folders, those in which the compiler makes others; what lies in these one build has made
+LEAST_ROOM_BYTES = 64 << 20  # the first build of an image leaves 43 MB
 
 
 def cache_dir(home: Path, asked: str | None) -> Path:
@@ -22,12 +27,25 @@ def _users_own() -> Path:
 
 
 def _writable(place: Path) -> bool:
-    """Whether files can be made there; makes the folder."""
+    """Whether files can be made there and in what of it is there already, which another user may have made; makes the folder."""
     try:
         place.mkdir(parents=True, exist_ok=True)
+        return all(os.access(folder, os.W_OK | os.X_OK) for folder in _folders(place, DEEPEST))
     except OSError:
         return False
-    return os.access(place, os.W_OK | os.X_OK)
+
+
+def _folders(place: Path, depth: int) -> Iterator[Path]:
+    yield place
+    if depth:
+        for entry in os.scandir(place):
+            if entry.is_dir(follow_symlinks=False):
+                yield from _folders(Path(entry.path), depth - 1)
+
+
+def room_bytes() -> int:
+    """What is free on the disk of the cache."""
+    return shutil.disk_usage(CACHE_DIR).free
 
 
 def _temporary() -> Path:

@@ -21,7 +21,7 @@ from typing import Any
 from cffi import FFI
 
 from records.errors import BadInput
-from toolchain.cache import CACHE_DIR, is_whole
+from toolchain.cache import CACHE_DIR, LEAST_ROOM_BYTES, is_whole, room_bytes
 
 # No contraction and no relaxed arithmetic: float32 results must be the same bits on host and target.
 STRICT_FLOAT_FLAGS = (
@@ -41,6 +41,9 @@ _LIBRARY_FLAGS = ("-shared", "-fPIC", "-g0")
 _C_LIBRARY = ("libm.so.6", "libc.so.6", "ld-linux")
 # A name that is missing and none of a runtime's, which begin with two underscores: to build zig's runtime, five seconds, cannot help.
 _NOBODY_S = re.compile(r"undefined symbol: (?!__)")
+_OF_A_SOURCE = re.compile(
+    r":\d+:\d+: error:|undefined symbol"
+)  # the compiler's and the linker's own complaints of what they were given
 INTERRUPTED = (-signal.SIGINT, 128 + signal.SIGINT)  # exit status of a child, and of a shell's
 # Simulation kernels: still without contraction or re-ordering, so that single and batched runs agree to the bit.
 FAST_FLAGS = ("-O3", "-std=c11", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined")
@@ -87,6 +90,12 @@ def run_zig(arguments: Sequence[str], what: str) -> None:
     done = subprocess.run([*_zig(), *arguments], capture_output=True, text=True, env=zig_environment(), check=False)
     if done.returncode in INTERRUPTED:
         raise KeyboardInterrupt
+    if done.returncode != 0 and not _OF_A_SOURCE.search(done.stderr) and room_bytes() < LEAST_ROOM_BYTES:
+        got, expected = (
+            f"{room_bytes() >> 20} MB free",
+            f"{LEAST_ROOM_BYTES >> 20} MB for what the C compiler keeps there",
+        )
+        raise BadInput("cache", str(CACHE_DIR), got, expected, "make room, or name another folder: TWINLAW_CACHE=DIR")
     if done.returncode != 0:
         raise BadInput(
             what="C compilation",

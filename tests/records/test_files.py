@@ -4,6 +4,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from records.errors import BadInput
+from records.files import write_together
 from tests.test_project import ROOT
 
 # A limit of this process on the size of files stands for a full disk; Python ignores the signal and meets the error.
@@ -28,3 +32,13 @@ def test_a_file_without_room_leaves_what_was_there_and_says_to_make_room(tmp_pat
     assert done.stdout.startswith(f"{path}: output file: got ")
     assert "make room" in done.stdout
     assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("kept.json", "before")]
+
+
+def test_files_that_belong_together_are_all_new_or_all_old(tmp_path: Path) -> None:
+    """Truth: the second cannot be written, as its folder is a file; so the first stays as it was, and nothing lies beside it."""
+    (tmp_path / "law.h").write_text("old")
+    (tmp_path / "no folder").touch()
+    with pytest.raises(BadInput, match="no folder"):
+        write_together({tmp_path / "law.h": "new", tmp_path / "no folder" / "law.c": "new"})
+    assert (tmp_path / "law.h").read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["law.h", "no folder"]

@@ -74,3 +74,12 @@ def test_a_temporary_folder_of_somebody_else_is_not_trusted(
     monkeypatch.setattr(cache.os, "getuid", lambda: us + 1)
     theirs = first.rename(tmp_path / "tmp" / f"twinlaw-{us + 1}")
     assert cache_dir(checkout, None) not in {first, theirs}
+
+
+@pytest.mark.parametrize("inner", ["zig", "zig/h"])
+def test_a_cache_in_which_another_user_has_made_folders_is_left_to_that_user(
+    inner: str, checkout: Path, user_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (checkout / ".cache" / "zig" / "h").mkdir(parents=True)
+    sealed(monkeypatch, checkout / ".cache" / inner)
+    assert cache_dir(checkout, None) == user_folder

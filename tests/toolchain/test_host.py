@@ -1,6 +1,7 @@
 """The host compiler's cache: what a library is called is what it was made from, whoever asks at once and whatever changes meanwhile."""
 
 import math
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -68,6 +69,17 @@ def test_a_library_that_calls_what_nobody_has_is_refused_when_it_is_built(cache:
     with pytest.raises(BadInput, match="undefined symbol: nobody_has_this"):
         build_shared("answer", [source])
     assert not list(cache.iterdir())
+
+
+def test_a_full_disk_is_told_as_that_and_a_wrong_source_as_its_own_fault(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(host, "room_bytes", lambda: 3 << 20)
+    with pytest.raises(BadInput, match=r"wrong\.c.*expected ';'"):
+        build_shared("wrong", [CText("wrong.c", "int wrong(void) { return 1 }\n")])
+    monkeypatch.setattr(host, "_zig", lambda: (sys.executable, "-c", "import os; os.abort()"))
+    with pytest.raises(BadInput, match=r"3 MB free.*TWINLAW_CACHE"):
+        build_shared("right", [CText("right.c", "int right(void) { return 1; }\n")])
 
 
 def test_c_calls_the_c_library_that_python_runs_with(cache: Path) -> None:

@@ -128,5 +128,11 @@ def notes(sentences: Iterable[str]) -> None:
 
 
 def fail(message: str) -> None:
-    """Print one line on stderr, marked as an error."""
-    sys.stderr.write(f"{paint('twinlaw: error:', 31, sys.stderr)} {' '.join(message.split())}\n")
+    """Print one line on stderr, marked as an error; where nothing can be written there the exit status alone tells."""
+    try:
+        sys.stderr.write(f"{paint('twinlaw: error:', 31, sys.stderr)} {' '.join(message.split())}\n")
+        sys.stderr.flush()
+    except (
+        OSError
+    ):  # what is still to be written there goes nowhere, or the interpreter would leave with a status of its own
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())

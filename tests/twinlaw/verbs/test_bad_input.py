@@ -270,3 +270,11 @@ def test_a_full_disk_behind_standard_output_is_one_clear_line() -> None:
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert "standard output" in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+def test_where_standard_error_is_full_the_exit_status_still_tells_bad_input() -> None:
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "twinlaw.command", "import", "no such file.csv"]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=full, cwd=ROOT, check=False)
+    assert (done.returncode, done.stdout) == (2, b"")

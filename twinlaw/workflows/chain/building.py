@@ -11,7 +11,7 @@ from codegen.traceability.a2l import ImageMap, a2l_text, under
 from controllers import loading
 from records.board import STM32G071, Board
 from records.errors import BadInput
-from records.files import write_atomic
+from records.files import write_together
 from records.law_table import FlownTable
 from records.loops import LOOPS
 from records.protocol import protocol_of
@@ -28,8 +28,7 @@ def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mappin
     """Generate law and protocol and write them to `folder`; returns the law's texts by file name."""
     with stage("generating C"):
         law = loading.generate(table, arithmetic)
-        for name, text in {**law, **_protocol(table)}.items():
-            write_atomic(folder / name, text)
+        write_together({folder / name: text for name, text in {**law, **_protocol(table)}.items()})
     return law
 
 
@@ -55,8 +54,7 @@ def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix:
     with stage("generating C"):
         texts = {**loading.generate(table, arithmetic), **_protocol(table)}
         files = prefixed(texts, prefix) if kind is None else library(kind, texts, prefix, table.loops)
-        for name, text in files.items():
-            write_atomic(folder / name, text)
+        write_together({folder / name: text for name, text in files.items()})
     return [folder / name for name in sorted(files)]
 
 
