@@ -181,6 +181,7 @@ REPLICAS = Count(48, "replicas", "two moments of a Gumbel law need no more", DEV
 SEEN_SCORE = Limit(4.0, "standard deviations", "an effect at its reference size with a smaller score would go unseen")
 BLIND_SHARE = Limit(0.6, "share of the library", "with more of it unseen the data cannot tell")
 EVENT_GRID_S = Limit(0.3, "s", "spacing of the steps in time that are scored", DEVELOPMENT)
+LEAST_EVENT_STEPS = Count(4, "steps", "of a log shorter than a second: fewer tell no pulse from a step")
 MOST_EVENT_STEPS = Count(200, "steps", "no more for long logs: time", DEVELOPMENT)
 EVENTS_APART_S = Limit(1.5, "s", "instants that are closer are one")
 INSTANTS = Count(3, "instants", "starts that are tried of an event, a sine or an input's steps: time")

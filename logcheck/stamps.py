@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
-from records.logs.restarts import LEAST_ROWS, restart_rows
+from records.logs.restarts import restart_rows
 
 
 @dataclass(frozen=True)
@@ -81,10 +81,9 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
     def say(kind: str, sentence: str, severity: str = NOTE, expected: str = "", remedy: str = "") -> Found:
         return Found(Finding(kind, name, "t_s", start_s, end_s, sentence, severity, 0, expected, remedy))
 
-    if found.rows < thresholds.LEAST_ROWS or found.duration_s < thresholds.LEAST_DURATION_S:
+    if found.rows < thresholds.LEAST_ROWS:
         got = f"{in_words(found.rows, 'row')} over {found.duration_s:g} s"
-        least = f"at least {thresholds.LEAST_ROWS} rows over {thresholds.LEAST_DURATION_S:g} s"
-        yield say("too_short", got, REFUSE, least, "record a longer run")
+        yield say("too_short", got, REFUSE, f"at least {thresholds.LEAST_ROWS} rows", "record a longer run")
         return
     yield from _order(log, name)
     if abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
@@ -111,7 +110,7 @@ def _order(log: RunLog, name: str) -> Iterator[Found]:
     yield from _not_rising(log, name, "t_s", log.t_s)
     if log.seq is None:
         return
-    begins = restart_rows(log.seq.astype(float), LEAST_ROWS)
+    begins = restart_rows(log.seq.astype(float))
     if begins.size:
         yield _numbered_anew(log, name, begins)
     else:

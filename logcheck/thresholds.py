@@ -119,8 +119,11 @@ LONGEST_HELD_S = Limit(
 )
 
 # stamps
-LEAST_ROWS = Count(50, "rows", "fewer rows tell nothing")
-LEAST_DURATION_S = Limit(1.0, "s", "one window of prediction")
+LEAST_ROWS = Count(
+    50,
+    "rows",
+    "fewer rows tell nothing; how long they last does not matter: half a second is a long run of a small motor",
+)
 GAP_PERIODS = Limit(1.5, "sample periods", "a longer step has rows missing")
 SLOW_S = Limit(1.0, "s", "rows of a plant with an axis that are so far apart are remarked on")
 STANDING_S = Limit(

@@ -167,7 +167,9 @@ class Linearisation:
         """The grid of instants of steps (k,), in s."""
         begin = min(filter_input.t_s[0] for filter_input in self.filter_inputs)
         end = max(filter_input.t_s[-1] for filter_input in self.filter_inputs)
-        return np.arange(begin, end, max(decisions.EVENT_GRID_S, (end - begin) / decisions.MOST_EVENT_STEPS))
+        whole = end - begin
+        apart = min(decisions.EVENT_GRID_S, whole / decisions.LEAST_EVENT_STEPS)
+        return np.arange(begin, end, max(apart, whole / decisions.MOST_EVENT_STEPS))
 
 
 def _of_one(values: Disturbances) -> Disturbances:

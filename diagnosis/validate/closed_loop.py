@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
-from diagnosis.validate.prediction import SETTLE_S
+from diagnosis.validate.prediction import settled_after_s
 from diagnosis.validate.simulated import Flown
 from records.diagnosis import ClosedLoop
 from records.log import RunLog
@@ -69,7 +69,7 @@ def refly(case: Case, name: str, table: ControllerTable, variants: Mapping[str, 
     """The one flight of `case`; None where a model cannot be filtered along it or it ends before the filter is sure."""
     (flight,) = case.flights
     samples = flight_of(flight.log, table)
-    first = int(np.searchsorted(samples.t_s, samples.t_s[0] + SETTLE_S))
+    first = int(np.searchsorted(samples.t_s, samples.t_s[0] + settled_after_s(samples.t_s)))
     if first + 2 >= len(samples.t_s):
         return None
     law = host_law(table)

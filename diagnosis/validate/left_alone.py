@@ -8,14 +8,15 @@ from numpy.typing import NDArray
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.closed_loop import MODEL_VARIANTS
-from diagnosis.validate.prediction import SETTLE_S, Span, predictions
+from diagnosis.validate.prediction import Span, predictions, settled_after_s
 from records.diagnosis import Shrinkage
 
 Array = NDArray[np.float64]
 
 
 def left_alone(case: Case, variants: Mapping[str, Hypothesis]) -> Shrinkage | None:
-    """Errors over all rows behind SETTLE_S of the flights of `case`, by each of MODEL_VARIANTS, as `shrinkage` has them of windows.
+    """Errors over all rows of the flights of `case` behind the settling of the filter, by each of MODEL_VARIANTS, as `shrinkage` has
+    them of windows.
 
     None where no log is longer, or a variant leaves all bounds on one.
     """
@@ -53,7 +54,7 @@ def _errors(case: Case, hypothesis: Hypothesis) -> Array | None:
 def _rest_of(flight: FilteredLog) -> Span | None:
     """From the first row at which the filter can tell the speeds to the end; None in a log that is shorter."""
     t_s = flight.log.t_s
-    start = int(np.searchsorted(t_s, t_s[0] + SETTLE_S))
+    start = int(np.searchsorted(t_s, t_s[0] + settled_after_s(t_s)))
     return Span(start, start, len(t_s)) if start < len(t_s) - 1 else None
 
 

@@ -21,6 +21,7 @@ from sim.paths.path import OutputStage
 Array = NDArray[np.float64]
 WINDOW_S = 1.0
 SETTLE_S = 2.0  # until then the filter cannot tell the speeds well enough
+SHORT_ROWS = 300  # as many as SETTLE_S and WINDOW_S hold at 100 Hz, at which helicopter and arms are logged
 UNSEEN_VARIANCE = 1e8  # variance of a reading that the state shall not follow, in squares of its own unit
 
 
@@ -59,7 +60,7 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
     for span in [Span(first, first, last) for first, last in windows(t_s)] if spans is None else spans:
         begin = int(np.searchsorted(filter_input.t_s, t_s[span.start] - max(lateness) + 1e-9, side="right")) - 1
         end = int(np.searchsorted(filter_input.t_s, t_s[span.last - 1] + 1e-9, side="right"))
-        if begin < 0 or t_s[span.start] < t_s[0] + SETTLE_S:
+        if begin < 0 or t_s[span.start] < t_s[0] + settled_after_s(t_s):
             continue
         part = _unseen(unforeseen_input, begin, end, outputs)
         free = chosen.run(part, given, run.filtered[begin], ahead, slots, locked=flight.locked)
@@ -72,9 +73,20 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
     return found
 
 
+def settled_after_s(t_s: Array) -> float:
+    """How long the filter runs along a log before predictions begin."""
+    return SETTLE_S * _pace(t_s)
+
+
+def _pace(t_s: Array) -> float:
+    """1 for a log that has room for a window behind what the filter needs, and for one of few rows; less for a short one of many, as
+    fast plants give."""
+    return min(1.0, float(t_s[-1] - t_s[0]) / (SETTLE_S + WINDOW_S)) if len(t_s) >= SHORT_ROWS else 1.0
+
+
 def windows(t_s: Array) -> list[tuple[int, int]]:
     """First row and row after the last of each window."""
-    number = np.floor((t_s - t_s[0]) / WINDOW_S + 1e-9).astype(int)
+    number = np.floor((t_s - t_s[0]) / (WINDOW_S * _pace(t_s)) + 1e-9).astype(int)
     edges = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(t_s)]
     return [(first, last) for first, last in pairwise(edges) if last - first > 1]
 

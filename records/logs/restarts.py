@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 LEAST_ROWS = 50  # between two falls of a clock: fewer are rows out of order, as no recording is so short
-LEAST_FALL_S = 1.0  # no recording is shorter: a clock that falls by less has rows out of order
 PAUSE_S = 1.0  # between two recordings on one clock, and PAUSE_PERIODS at least: more than a log's missing rows bridge
 PAUSE_PERIODS = 10.0
 COUNTERS = (2**8, 2**16, 2**32)  # a sequence number begins again there without another recording
@@ -26,11 +25,13 @@ class Restart:
     own_s: float
 
 
-def restart_rows(values: Array, least_fall: float = LEAST_FALL_S) -> NDArray[np.int64]:
-    """Rows at which a clock or a counter (n,) falls back, and stays there, for recordings of LEAST_ROWS and more; else none."""
+def restart_rows(values: Array) -> NDArray[np.int64]:
+    """Rows at which a clock or a counter (n,) falls back by LEAST_ROWS usual steps, and stays there, for recordings of as many; else
+    none."""
     falls = np.flatnonzero(np.diff(values) < 0.0) + 1
     if not falls.size or np.diff([0, *falls.tolist(), len(values)]).min() < LEAST_ROWS:
         return np.zeros(0, np.int64)
+    least_fall = LEAST_ROWS * float(np.median(np.diff(values)))
     stays = (values[falls - 1] - values[falls] >= least_fall) & (values[falls + 1] < values[falls - 1])
     return falls if stays.all() else np.zeros(0, np.int64)
 

@@ -1,17 +1,22 @@
 """Every verb on plants of one's own: what two files can express works, or is refused in words."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from records.log import load_log
+from records.log import RunLog, load_log
 from records.plant import load_plant, save_plant
 from sim.added_effects import library, with_effects
 from sim.bind import bind
 from sim.columns import log_columns
+from sim.manoeuvres import at_rest
+from sim.simulate import simulate
 from tests.own_plants import REFUSED, WORKING
 from tests.soak import sampled
+from twinlaw import diagnose
 from twinlaw.command import main
 
 # What each rig has and its plant file has not; where nothing is said, the arm rubs.
@@ -143,3 +148,17 @@ def test_a_helicopter_s_equations_elsewhere_are_designed_for(tmp_path: Path) -> 
     assert mine["elevation"] == own["elevation"]
     assert mine["azimuth"] == own["azimuth"]
     assert mine["origin"]["plant_digest"] != own["origin"]["plant_digest"]
+
+
+def test_a_third_of_a_second_of_a_fast_motor_names_its_dry_friction(tmp_path: Path) -> None:
+    """Truth: 0.05 N m of Coulomb friction; a step of 6 rad/s shows in ten of the 300 rows."""
+    assert main(["new-plant", "motor", "--like", "motor", "--out", str(tmp_path)]) == 0
+    motor = bind(load_plant(tmp_path / "plant.toml"))
+    friction = replace(motor.plant.parameters["tau_c"], value=0.05)
+    rig = bind(replace(motor.plant, parameters={**motor.plant.parameters, "tau_c": friction}))
+    t_s = 1e-3 * np.arange(300)
+    u_V = np.array([6.0, -4.0, 9.0, 2.0, -8.0])[(t_s / 0.06).astype(int)][:, None]
+    y = simulate(rig, t_s, at_rest(rig), u_V, substeps=4).y
+    log = RunLog(log_columns(motor.model), 1e-3, "open", t_s, u_V, np.asarray(y).reshape(len(t_s), -1))
+    found = diagnose(motor, {"short": log}).diagnosis
+    assert (found.verdict, *found.found) == ("gap", "shaft.coulomb")
