@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from recordings.formats.bags.messages import LONGEST_ARRAY
 from recordings.formats.clocks import with_clocks
-from recordings.formats.messages import LONGEST_ARRAY
 from recordings.formats.optional import package
 from recordings.formats.text.cells import from_the_first_s
 from recordings.formats.text.headings import name_and_unit

@@ -44,8 +44,8 @@ FORMATS: Mapping[tuple[str, ...], Format] = {
     (".mf4", ".mdf"): Format("mdf", "MDF file", "asammdf", "mdf4", apart=True),
     (".ulg",): Format("ulog", "PX4 log", "pyulog", "px4"),
     (".parquet",): Format("parquet", "Parquet file", "pyarrow", "parquet", apart=True),
-    (".mcap",): Format("mcap", "MCAP file", "mcap", "ros"),
-    (".db3", ".bag"): Format("ros_bag", "ROS bag", "rosbags", "ros"),
+    (".mcap",): Format("bags.mcap", "MCAP file", "mcap", "ros"),
+    (".db3", ".bag"): Format("bags.ros_bag", "ROS bag", "rosbags", "ros"),
     (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods"): Format(
         "spreadsheet", "workbook", "python_calamine", "excel", apart=True
     ),

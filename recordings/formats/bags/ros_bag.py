@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from recordings.formats.messages import Message, contents_of
+from recordings.formats.bags.messages import Message, contents_of
 from recordings.formats.optional import package
 from recordings.layout import TextLayout
 from recordings.signals import Contents

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from recordings.formats.messages import Message, contents_of
+from recordings.formats.bags.messages import Message, contents_of
 from recordings.formats.optional import package
 from recordings.layout import TextLayout
 from recordings.signals import Contents
