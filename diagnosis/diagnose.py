@@ -62,8 +62,15 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
 def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:
     """What is to be known of the columns of the logs to explain; raises BadInput where they are not what they are called."""
     nominal, where = seen.retuned.fit, "the logs to explain"
-    rows = () if _in_their_rows(firmware) else demand_rows(seen.case, nominal, where, _ways(firmware))
+    rows = () if _in_their_rows(firmware) else _rows(seen, where, _ways(firmware))
     return (*demand_wiring(seen.case, nominal, plain_fit, where), *rows)
+
+
+def _rows(seen: Seen, where: str, ways: tuple[int, ...]) -> tuple[Note, ...]:
+    """What is to be known of the rows of the columns; where inputs seem to move between rows, also of commands that are held, and late."""
+    held = seen.held
+    told = demand_rows(held.case, held.fit, where, ways, held.beaten) if held else ()
+    return told or demand_rows(seen.case, seen.retuned.fit, where, ways)
 
 
 def _in_their_rows(firmware: Firmware | None) -> bool:

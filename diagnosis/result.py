@@ -63,7 +63,7 @@ class Seen:
     """What is seen before any cause is looked for: the plant re-tuned within its spread, score tests of the library beside it, the fit with
     lost frames, and what all that says of a gap; `beside` is what was fitted already, `checked` are the logs to check on, `decisions` the
     rules that had a say so far, `begun` its single effects where these were fitted, `still` the same from the plant without noise with a
-    memory where that was looked at."""
+    memory where that was looked at, `held` the logs with their inputs held from row to row where another reading is likelier."""
 
     case: Case
     checked: Case | None
@@ -76,10 +76,20 @@ class Seen:
     beside: FittedHypothesis | None = None
     begun: Alone | None = None
     still: "Seen | None" = None
+    held: "Held | None" = None
 
     def because(self, *further: Decision) -> "Seen":
         """The same with further rules that had a say."""
         return replace(self, decisions=(*self.decisions, *further))
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """The logs with inputs held from row to row, the plant's fit to them, and the nats by which several commands a row are likelier."""
+
+    case: Case
+    fit: Fit
+    beaten: float
 
 
 @dataclass(frozen=True, eq=False)

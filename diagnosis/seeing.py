@@ -17,7 +17,7 @@ from diagnosis.fit.nominal import best_plain_fit, plain_beside, with_memory
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
-from diagnosis.result import Material, Seen
+from diagnosis.result import Held, Material, Seen
 from diagnosis.search.beam import Alone, alone
 from diagnosis.search.draughts import gust_shares, without_memory
 from diagnosis.search.lost_frames import with_losses
@@ -40,11 +40,12 @@ def seen_of(bound: BoundPlant, material: Material) -> Seen:
 def detected(case: Case, checked: Case | None, beside: FittedHypothesis | None = None) -> Seen:
     """Fit the plant alone, and score the library beside it; where a gap shows, once more from where the best single effect left the plant's
     numbers, as slopes from the stated ones may lead to another hill."""
-    nominal = best_plain_fit(case)
-    commands, nominal, between = between_rows(case, nominal)
+    as_held = best_plain_fit(case)
+    commands, nominal, between = between_rows(case, as_held)
+    held = Held(case, as_held, between[0].value or 0.0) if nominal is not as_held else None
     case, checked = with_commands(case, commands), None if checked is None else with_commands(checked, commands)
     nominal = with_memory(case, nominal)
-    seen = replace(scored(case, checked, nominal, between), beside=beside)
+    seen = replace(scored(case, checked, nominal, between), beside=beside, held=held)
     if not alarmed(seen.detection.p):
         return seen
     seen = _with_names(seen)
@@ -56,7 +57,11 @@ def detected(case: Case, checked: Case | None, beside: FittedHypothesis | None =
     better = gain > decisions.TAKEN_IN
     outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
-    return replace(scored(case, checked, again, (*between, rule)), beside=beside) if better else seen.because(rule)
+    return (
+        replace(scored(case, checked, again, (*between, rule)), beside=beside, held=held)
+        if better
+        else seen.because(rule)
+    )
 
 
 def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:

@@ -19,7 +19,7 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.filter.filter_input import READINGS, FilterInput, beginning
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import gain_over, settled
+from diagnosis.fit.nominal import fitted_from, gain_over, settled
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
 from diagnosis.hypothesis.initial_state import start_of
@@ -53,12 +53,14 @@ class Misplaced:
 
 @dataclass(frozen=True)
 class Moved:
-    """What it gains, in nats, to move columns, and whether the plant then follows the logs; and which other moves gain about as much."""
+    """What it gains, in nats, to move columns, and whether the plant then follows the logs; which other moves gain about as much; and
+    where the plant's fit to the moved columns ended."""
 
     slip: Misplaced
     gain: float
     follows: bool
     alike: tuple[Misplaced, ...] = ()
+    end: Fit | None = None
 
     @property
     def told(self) -> bool:
@@ -66,24 +68,30 @@ class Moved:
         return self.gain > decisions.ROWS_GAIN
 
 
-def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LATE,)) -> tuple[Note, ...]:
+def demand_rows(
+    case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LATE,), beaten: float = 0.0
+) -> tuple[Note, ...]:
     """What is to be known of the rows in which columns stand: that some may be others, or that these logs do not tell.
 
     Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own,
     and by more than ROWS_REFUSED better; but where an effect promises more than that, the logs are those of a rig that has it.
-    `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are.
+    `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are. `beaten` are the nats by which
+    another reading of the inputs between rows is likelier than this one, which a move must gain besides; it is told of nothing else.
     """
     short = case.with_flights([_begun(flight) for flight in case.flights])
     usual = _usual(short, nominal)
     if usual is None:
         return ()
     found, commands = misplaced(Asked(short, usual))
+    found = None if found is None else replace(found, gain=found.gain - beaten)
+    if beaten and (found is None or not found.told):
+        return ()
     if found is None:
         return _unseen(commands)
     refused = found.follows and found.slip.way in ways and found.gain > decisions.ROWS_REFUSED
     if not refused:
         return (_note(case, found),)
-    if most_by_an_effect(short, usual) > found.gain:
+    if most_by_an_effect(short, _from_the_moved(short, usual, found)) > found.gain:
         return ()
     remedy = ", or ".join(_move(case, slip) for slip in (found.slip, *found.alike))
     if found.slip.way == EARLY:
@@ -95,6 +103,14 @@ def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LAT
         expected="columns in the rows of their time",
         remedy=remedy,
     )
+
+
+def _from_the_moved(case: Case, usual: Fit, found: Moved) -> Fit:
+    """The plant's fit to the logs as they are from where that to the moved columns ended, where that is the better one: where the plant
+    follows the logs by nothing, slopes promise anything."""
+    assert found.end is not None
+    there = fitted_from(case, found.end)
+    return there if there is not None and there.log_posterior > usual.log_posterior else usual
 
 
 def most_by_an_effect(case: Case, usual: Fit) -> float:
@@ -131,12 +147,17 @@ class Asked:
         return -np.inf if at is None else at.log_posterior - self.usual.log_posterior + at.promised
 
     def moved(self, slip: Misplaced) -> Moved:
-        """What a move gains once the plant is fitted to it."""
+        """What a move gains once the plant is fitted to it, from where its fit to the logs as they are ended and afresh: numbers that make
+        up for a command at a wrong time may lie where no slope leads back from."""
         other = moved(self.case, slip)
-        end = _settled_or_none(other, self.usual.hypothesis)
-        if end is None:
+        afresh = nominal_hypothesis(self.case, float(decisions.FIRST_PROCESS_NOISE))
+        ends = [
+            found for start in (self.usual.hypothesis, afresh) if (found := _settled_or_none(other, start)) is not None
+        ]
+        if not ends:
             return Moved(slip, -np.inf, False)
-        return Moved(slip, gain_over(self.case, self.usual, end), not is_strained(other, end))
+        end = max(ends, key=lambda found: found.log_posterior)
+        return Moved(slip, gain_over(self.case, self.usual, end), not is_strained(other, end), end=end)
 
     @property
     def commands(self) -> tuple[Misplaced, ...]:

@@ -91,11 +91,16 @@ def _under(case: Case, found: Fit, coloured: Hypothesis) -> Fit:
     return found
 
 
+def fitted_from(case: Case, other: Fit) -> Fit | None:
+    """The plant's fit to the logs of `case` from where it ended on another reading of them; None where it cannot run along them."""
+    return fit(case, with_process_noise(case, other.hypothesis), rounds=NOMINAL_ROUNDS)
+
+
 def gain_over(case: Case, usual: Fit, other: Fit) -> float:
     """By how many nats another reading of the logs, as fitted, is likelier than that of `case`, whose search counts from where the other
     ended too: else a hill that slopes did not find would look like another reading."""
     gain = other.log_posterior - usual.log_posterior
     if gain <= 0.0:
         return gain
-    again = fit(case, with_process_noise(case, other.hypothesis), rounds=NOMINAL_ROUNDS)
+    again = fitted_from(case, other)
     return gain if again is None else min(gain, other.log_posterior - again.log_posterior)

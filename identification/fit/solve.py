@@ -87,7 +87,8 @@ def _informed_step(damped: Array, A: Array, b: Array, scale: Array) -> Array:
     it is. A knows a direction v of S A S with v^T S A S v > `INFORMED`; what is left to gain by it is (v^T S b)^2 over that, in variances.
     """
     information, V = np.linalg.eigh(A * np.outer(scale, scale))
-    gain = (V.T @ (scale * b)) ** 2
+    with np.errstate(over="ignore"):  # far from the rig: infinitely much is to be gained
+        gain = (V.T @ (scale * b)) ** 2
     open_to_data = (information > INFORMED) | (gain > np.maximum(information, 1.0))
     if open_to_data.all():
         return np.asarray(np.linalg.solve(damped, b))

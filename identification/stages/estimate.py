@@ -9,11 +9,11 @@ from scipy.special import stdtrit
 
 from identification.fit.belief import Belief, prior, widened
 from identification.fit.information import inverse, marginal
-from identification.fit.normal_equations import ROUNDING, Point, growth
+from identification.fit.normal_equations import ROUNDING, Point, at, growth
 from identification.fit.problem import Problem, Told, by_name
 from identification.fit.ranges import Range
 from identification.fit.solve import Watch, solve
-from identification.fit.steps import MOST, SHIFT_SD, finer, shift_sd
+from identification.fit.steps import MOST, SHIFT_SD, finer, halved, shift_sd
 from identification.runs.run import Run
 from identification.search.methods import Search, Searched, search, started
 from identification.stages.weights import by_channel, by_correlation
@@ -149,13 +149,22 @@ def _at_bound(problem: Problem, point: Point) -> tuple[str, ...]:
 
 def _fitted(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:
     """Fit, weigh, fit again; the same in half the steps while those move the estimates, and less each time."""
-    before = np.inf
+    problem, before = _within_numbers(problem), np.inf
     while True:
         weighed, point = _weighed_fit(problem, known, watch)
         now = shift_sd(weighed, point)
         if now <= SHIFT_SD or now > before / 2.0 or max(run.substeps for run in point.runs) >= MOST:
             return weighed, point
         problem, before = replace(problem, start=point.theta, runs=finer(problem.runs, point)), now
+
+
+def _within_numbers(problem: Problem) -> Problem:
+    """The problem in as many steps a sample as its start needs, which may be of a faster plant than the one that is stated."""
+    while not np.isfinite(at(problem, problem.start, problem.runs).cost):
+        if max(run.substeps for run in problem.runs) >= MOST:
+            break
+        problem = replace(problem, runs=tuple(halved(run) for run in problem.runs))
+    return problem
 
 
 def _weighed_fit(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:

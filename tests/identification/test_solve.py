@@ -16,7 +16,9 @@ from identification.runs.run import coefficient_names
 from identification.stages.estimate import estimate, problem_of
 from identification.stages.weights import by_channel
 from records.errors import BadInput
+from tests.own_plants import NO_AXIS
 from tests.soak import sampled
+from twinlaw import fly, load
 
 
 @pytest.fixture(scope="module")
@@ -155,3 +157,12 @@ def test_starts_whose_slopes_have_grown_past_all_digits_can_still_be_solved_for(
     C = _starts(run, grown).C
     assert np.all(np.isfinite(np.linalg.solve(C, C)))
     assert np.all(np.linalg.cond(C) < 1e14)
+
+
+def test_a_start_that_is_faster_than_the_stated_plant_is_followed_in_as_many_steps_as_it_needs(tmp_path):
+    """Truth: L = 0.1 V s/A. From 1 mV s/A a step of 10 ms is 20 time constants, of which Runge and Kutta follow 2.8 at once."""
+    coil = load(str(NO_AXIS.write(tmp_path, "coil")))
+    log = fly(coil)
+    brief = replace(log, t_s=log.t_s[:400], u=log.u[:400], y=log.y[:400])
+    found = estimate([log_run(coil, brief, "log", np.inf)], ("L",), {"L": Range(1e-3, 1e-4, 1.0, 0.1)}, NOTHING)
+    assert abs(found.belief.value("L") - 0.1) < 1e-3

@@ -1,12 +1,14 @@
 """Every verb on plants of one's own: what two files can express works, or is refused in words."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from records.errors import BadInput
 from records.log import RunLog, load_log
 from records.plant import load_plant, save_plant
 from sim.added_effects import library, with_effects
@@ -16,7 +18,7 @@ from sim.manoeuvres import at_rest
 from sim.simulate import simulate
 from tests.own_plants import REFUSED, WORKING
 from tests.soak import sampled
-from twinlaw import diagnose
+from twinlaw import diagnose, fly, identify
 from twinlaw.command import main
 
 # What each rig has and its plant file has not; where nothing is said, the arm rubs.
@@ -162,3 +164,16 @@ def test_a_third_of_a_second_of_a_fast_motor_names_its_dry_friction(tmp_path: Pa
     log = RunLog(log_columns(motor.model), 1e-3, "open", t_s, u_V, np.asarray(y).reshape(len(t_s), -1))
     found = diagnose(motor, {"short": log}).diagnosis
     assert (found.verdict, *found.found) == ("gap", "shaft.coulomb")
+
+
+@pytest.mark.parametrize("verb", [identify, diagnose])
+def test_commands_that_a_motor_s_log_has_a_row_late_are_named_and_made_no_physics(
+    verb: Callable[..., object], tmp_path: Path
+) -> None:
+    """Its current follows within a row of 10 ms: another inductance, or inputs that move between rows, make up for a part of it."""
+    assert main(["new-plant", "motor", "--like", "motor", "--out", str(tmp_path)]) == 0
+    motor = bind(load_plant(tmp_path / "plant.toml"))
+    log = fly(motor)
+    late = replace(log, u=np.concatenate([log.u[:1], log.u[:-1]]))
+    with pytest.raises(BadInput, match=r"u_V stands one row late in the log.*move u_V up by one row"):
+        verb(motor, {"late": late})
