@@ -4,6 +4,7 @@ One step per sample follows a rate of 1/T to z^4 / 120 of itself, z = period / T
 at z = 2.8. A motor's current or a small rotor is faster than that at the usual sample rates.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -13,8 +14,9 @@ from numpy.typing import NDArray
 from identification.fit.normal_equations import Point, leaned
 from identification.fit.problem import Problem
 from identification.runs.prediction import predicted
-from identification.runs.run import Run
+from identification.runs.run import Run, parameters_of
 from records.errors import BadInput
+from sim.substeps import LARGEST_STEP, fastest_rad_s
 
 Array = NDArray[np.float64]
 MOST = 64
@@ -43,6 +45,13 @@ def followed(run: Run) -> Run:
             "a plant whose fastest part shows at this sample rate", "check its parameters, or leave that part out",
         )  # fmt: skip
     return run
+
+
+def in_steps_of(run: Run, names: Sequence[str], theta: Array) -> Run:
+    """The run in as many steps a sample as the fastest motion at theta takes; as it is where `MOST` are too few."""
+    there = replace(run.bound, p=parameters_of(run, names, theta))
+    needed = fastest_rad_s(there, run.x0[0]) * float(np.max(np.diff(run.t_s))) / LARGEST_STEP
+    return replace(run, substeps=max(run.substeps, math.ceil(needed))) if needed <= MOST else run
 
 
 def _near(run: Run, before: Array, after: Array) -> bool:

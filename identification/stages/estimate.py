@@ -13,7 +13,7 @@ from identification.fit.normal_equations import ROUNDING, Point, at, growth
 from identification.fit.problem import Problem, Told, by_name
 from identification.fit.ranges import Range
 from identification.fit.solve import Watch, solve
-from identification.fit.steps import MOST, SHIFT_SD, finer, halved, shift_sd
+from identification.fit.steps import MOST, SHIFT_SD, finer, in_steps_of, shift_sd
 from identification.runs.run import Run
 from identification.search.methods import Search, Searched, search, started
 from identification.stages.weights import by_channel, by_correlation
@@ -160,11 +160,9 @@ def _fitted(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]
 
 def _within_numbers(problem: Problem) -> Problem:
     """The problem in as many steps a sample as its start needs, which may be of a faster plant than the one that is stated."""
-    while not np.isfinite(at(problem, problem.start, problem.runs).cost):
-        if max(run.substeps for run in problem.runs) >= MOST:
-            break
-        problem = replace(problem, runs=tuple(halved(run) for run in problem.runs))
-    return problem
+    if np.isfinite(at(problem, problem.start, problem.runs).cost):
+        return problem
+    return replace(problem, runs=tuple(in_steps_of(run, problem.names, problem.start) for run in problem.runs))
 
 
 def _weighed_fit(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:
