@@ -41,6 +41,10 @@ def break_findings(log: RunLog, name: str) -> Iterator[Found]:
             f"{late.column} begins at {late.begins_s:.6g} s: {in_words(late.rows, 'row')} in front of it left out"
         )
         yield Found(Finding("late_input", name, late.column, late.begins_s, late.begins_s, sentence, rows=late.rows))
+    if log.disordered:
+        count, first_s = log.disordered.rows, log.disordered.first_s
+        sentence = f"t_s: {in_words(count, 'row')} whose time does not rise, first at {first_s:.6g} s; left out"
+        yield Found(Finding("disordered_rows", name, "t_s", first_s, first_s, sentence, rows=count))
     restarts = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts])
     if restarts.size:
         yield _restarted(log, name, restarts)

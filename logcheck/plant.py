@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from logcheck import thresholds
+from logcheck.ends import off_findings
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.locked import locked_findings
 from logcheck.motion import motion_findings
@@ -61,6 +62,7 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
         yield from _grid(log, name, column, facts.steps.get(column, 0.0))
         yield from reference_unit(log, name, column)
     yield from locked_findings(log, name, bound)
+    yield from off_findings(log, name, bound, facts.steps)
     yield from motion_findings(log, name, bound)
     yield from rate_unit(log, name, bound.model)
     yield from rotor_unit(log, name, bound, facts.limits)

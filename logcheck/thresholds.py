@@ -62,6 +62,13 @@ CUT_OFF_ROWS = Count(128, "rows", "next to a stand at most", "the same stands")
 CUT_OFF_ALONE_STEPS = Limit(20.0, "least moves", "before a stand alone, in half as many rows", "the same stands")
 LINK_STOPS_S = Limit(0.5, "s", "within which all outputs stop where the link stops")
 
+# ends
+MOVED_FAR = Limit(0.5, "share of an input's range", "that moves any axis that is not stopped")
+ANSWER_TIMES = Limit(3.0, "times the most rows", "in which an output answers such a move elsewhere")
+ANSWER_ROWS = Count(10, "rows", "unanswered at least")
+LEAST_ANSWERS = Count(20, "answers", "fewer do not tell how an output answers")
+ASKED = Count(200, "rows", "of a log, spread evenly: time")
+
 # held
 LONGEST_HOLD_ROWS = Count(64, "rows", "longest hold from one reading to the next")
 LEAST_HELD_CHANGES = Count(60, "changes", "fewer changes show no rhythm")

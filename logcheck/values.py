@@ -7,6 +7,7 @@ import numpy as np
 
 from logcheck import thresholds
 from logcheck.dead import dead_findings, read_again
+from logcheck.ends import end_findings
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.held import held_findings
 from logcheck.seams import seam_findings
@@ -88,7 +89,9 @@ def value_findings(
     for found in seams:
         begins |= begins if found.begins is None else found.begins
     held = list(held_findings(log, name))
-    yield from held or dead_findings(log, name, steps, begins, positions)
+    dead = held or list(dead_findings(log, name, steps, begins, positions))
+    yield from dead
+    yield from end_findings(_without(log, dead), name, steps, begins, positions)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
 

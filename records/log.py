@@ -21,6 +21,7 @@ from records.text.log_csv import read_rows, rows_text
 from records.text.reading import read_toml
 
 SCHEMA = "run-log/1"
+MOST_DISORDERED = 0.1  # of a log's rows: with more the file is in no order, or its times are no times
 LOOPS = ("open", "closed")
 DOUBLE = "float64"
 ARITHMETICS = (DOUBLE, "float32", "fixed")
@@ -36,6 +37,14 @@ class LogColumns:
     outputs: tuple[str, ...]
     optional: tuple[str, ...]
     axes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Disordered:
+    """Rows of a file whose time does not rise: how many, and the first one's time."""
+
+    rows: int
+    first_s: float
 
 
 @dataclass(frozen=True)
@@ -55,7 +64,8 @@ class RunLog:
     board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none, and
     `arithmetic` in which its law computed: DOUBLE is a simulation's own, in which no firmware flew; None where nobody said.
     `source` the published recording that the log was imported from, None for a log of this project's own making; `restarts` are where
-    another recording of the same file begins, whose times are counted on; `late_inputs` begin behind a recording's first row.
+    another recording of the same file begins, whose times are counted on; `late_inputs` begin behind a recording's first row;
+    `disordered` are rows of the file that were left out.
     """
 
     columns: LogColumns
@@ -72,6 +82,7 @@ class RunLog:
     source: Source | None = None
     restarts: tuple[Restart, ...] = ()
     late_inputs: tuple[LateInput, ...] = ()
+    disordered: Disordered | None = None
 
     def column(self, name: str) -> Array:
         """The column called `name`, shape (n,); raises KeyError for one that is not there."""
@@ -149,7 +160,8 @@ def facts_of_sidecar(text: str, where: str, columns: LogColumns) -> dict[str, An
 def load_log(path: Path, columns: LogColumns) -> RunLog:
     """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are, and times that begin again count on.
 
-    Rows in front of an input's first number are left out, as nobody knows what moved the plant there. Raises BadInput naming file, line
+    Rows in front of an input's first number are left out, as nobody knows what moved the plant there, and a few whose time does not
+    rise. Raises BadInput naming file, line
     and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated row, a number that is none, time
     that does not increase, an input that is not finite, a time in another unit.
     """
@@ -161,6 +173,9 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     begins = restart_rows(data["t_s"])
     data["t_s"], restarts = on_one_clock(data["t_s"])
     kept, late_inputs = _from_the_inputs(data, begins, columns)
+    rising = _rising(data["t_s"])
+    disordered = Disordered(int((~rising).sum()), float(data["t_s"][~rising][0])) if not rising.all() else None
+    kept &= rising
     _check_numbers(data, kept, str(path), columns)
     demand_seconds(data["t_s"], float(sidecar["sample_period_s"]), str(path))
     seq = counted_on(data["seq"].astype(np.int64), begins)[kept] if "seq" in data else None
@@ -181,7 +196,15 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         source=parse_source(sidecar["source"], f"{sidecar_path}: source") if "source" in sidecar else None,
         restarts=restarts,
         late_inputs=late_inputs,
+        disordered=disordered,
     )
+
+
+def _rising(t_s: Array) -> NDArray[np.bool_]:
+    """Rows (n,) whose time is later than all before; all where more than MOST_DISORDERED are not, as then the clock is no clock."""
+    rising = np.concatenate([[True], t_s[1:] > np.maximum.accumulate(t_s)[:-1]])
+    few = bool(np.isfinite(t_s).all()) and float((~rising).mean()) <= MOST_DISORDERED
+    return rising if few else np.ones(len(t_s), bool)
 
 
 def _from_the_inputs(
@@ -288,7 +311,7 @@ def _check_numbers(data: Mapping[str, Array], kept: NDArray[np.bool_], where: st
                 "write nan",
             )
     late = np.flatnonzero(np.diff(data["t_s"]) <= 0.0)
-    if late.size:
+    if late.size and bool(_rising(data["t_s"]).all()):
         row = int(late[0]) + 1
         raise BadInput(
             "t_s",

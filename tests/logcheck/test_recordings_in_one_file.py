@@ -53,14 +53,35 @@ def test_times_that_begin_again_begin_another_log(tmp_path: Path, header: bool) 
     assert "at 0 s behind 19.99 s, which counts as 21 s here" in found.sentence
 
 
-def test_rows_out_of_order_are_no_recordings(tmp_path: Path) -> None:
+def with_rows(folder: Path, log: RunLog, rows: list[int]) -> Path:
+    path = in_one_file(folder, log)
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([lines[0], *(lines[row + 1] for row in rows)]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("rows", "kept", "told"),
+    [
+        ([*range(200), 150, *range(200, 300)], 300, "1 row whose time does not rise, first at 1.5 s; left out"),
+        ([*range(290), *range(20)], 290, "20 rows whose time does not rise, first at 0 s; left out"),
+        ([*range(100), *range(80, 200)], 200, "20 rows whose time does not rise, first at 0.8 s; left out"),
+    ],
+)
+def test_a_few_rows_out_of_order_are_no_recording_and_left_out(
+    rows: list[int], kept: int, told: str, tmp_path: Path
+) -> None:
     log = log_of(300)
-    for rows in ([*range(200), 150, *range(200, 300)], [*range(290), *range(20)], [*range(300)][::-1]):
-        path = in_one_file(tmp_path, log)
-        lines = path.read_text().splitlines()
-        path.write_text("\n".join([lines[0], *(lines[row + 1] for row in rows)]) + "\n")
-        with pytest.raises(BadInput, match="a time that increases"):
-            load_log(path, log.columns)
+    read = load_log(with_rows(tmp_path, log, rows), log.columns)
+    np.testing.assert_array_equal(read.y, log.y[:kept])
+    assert f"t_s: {told}" in [found.sentence for found in examine([read], PLANT, names=["log"]).findings]
+
+
+@pytest.mark.parametrize("rows", [[*range(300)][::-1], [*range(100), *range(60, 160), *range(120, 300)]])
+def test_more_than_a_tenth_of_the_rows_out_of_order_are_refused(rows: list[int], tmp_path: Path) -> None:
+    log = log_of(300)
+    with pytest.raises(BadInput, match="a time that increases"):
+        load_log(with_rows(tmp_path, log, rows), log.columns)
 
 
 def test_sequence_numbers_that_begin_again_begin_another_log_and_a_counter_at_its_end_does_not(tmp_path: Path) -> None:

@@ -1,0 +1,108 @@
+"""An output that stands to the end of a log: the rig was switched off, or its sensor no longer read, and no jump tells of it.
+
+Elsewhere in the log it answers within so many rows when inputs have moved by half of their range. One that does not in three times as many
+is not read. At an end of its range an axis may be stopped.
+"""
+
+from collections.abc import Collection, Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from logcheck import thresholds
+from logcheck.dead import amount
+from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
+from records.log import RunLog
+from sim.bind import BoundPlant
+
+
+def end_findings(
+    log: RunLog, name: str, steps: Mapping[str, float], begins: Rows, positions: Collection[str] = ()
+) -> Iterator[Found]:
+    """The last stand of each output, where inputs would have moved it; `begins` (n,) and `positions` as for dead stretches."""
+    last = int(np.max(np.flatnonzero(begins), initial=0))
+    for column in log.columns.outputs:
+        present = last + np.flatnonzero(np.isfinite(log.column(column)[last:]))
+        values, u = log.column(column)[present], log.u[present]
+        moved = np.flatnonzero(np.diff(values) != 0.0)
+        if not moved.size:
+            continue
+        begin = int(moved[-1]) + 1
+        least = max(float(np.abs(np.diff(values))[moved].min()), steps.get(column, 0.0))
+        if column in positions and _is_at_an_end(values, values[begin], least):
+            continue
+        waited, usually = _unanswered(values, u, begin)
+        if waited < max(thresholds.ANSWER_ROWS, thresholds.ANSWER_TIMES * (usually + 1)):
+            continue
+        unread: Rows = np.zeros(len(log.t_s), bool)
+        unread[present[begin + 1 :]] = True
+        span = (float(log.t_s[present[begin]]), float(log.t_s[present[-1]]))
+        sentence = (
+            f"{column} stands at {values[begin]:.4g} from {span[0]:.6g} s to the end, {waited} rows of it after inputs had moved by half "
+            f"their range, which it answers within {usually + 1} elsewhere: the rig was off, or the sensor was not read; left out"
+        )
+        yield Found(Finding("dead_end", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
+
+
+def off_findings(log: RunLog, name: str, bound: BoundPlant, steps: Mapping[str, float]) -> Iterator[Found]:
+    """The end of a log in which nothing changes any more, begun by a leap of what a mass moves: the rig was switched off."""
+    begin = _still_from(log)
+    if len(log.t_s) - begin < thresholds.DEAD_ROWS or begin < 2:
+        return
+    states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
+    for output, expression in bound.model.outputs.items():
+        values = log.column(output)[: begin + 1]
+        moves, step = np.abs(np.diff(values[np.isfinite(values)])), steps.get(output, 0.0)
+        if str(expression) not in states or moves.size < 2 or not moves.any():
+            continue
+        near = moves[-1 - thresholds.AROUND_STAND_ROWS : -1].max(initial=0.0)
+        least = max(float(moves[moves > 0.0].min()), step)
+        if moves[-1] > thresholds.BROKEN_OFF * max(near, least) and moves[-1] >= thresholds.LEAST_SEAM_STEPS * least:
+            off = np.arange(len(log.t_s)) >= begin
+            span = (float(log.t_s[begin]), float(log.t_s[-1]))
+            sentence = (
+                f"from {span[0]:.6g} s to the end nothing changes, and {output} leaps there by {amount(float(moves[-1]), output, step)}: "
+                "the rig was switched off; left out"
+            )
+            yield Found(Finding("switched_off", name, None, *span, sentence, EXCLUDE, int(off.sum())), off)
+            return
+
+
+def _still_from(log: RunLog) -> int:
+    """The row from which every input and every output is what it is in the last."""
+    same = (log.u == log.u[-1]).all(axis=1) & ((log.y == log.y[-1]) | np.isnan(log.y)).all(axis=1)
+    moving = np.flatnonzero(~same)
+    return int(moving[-1]) + 1 if moving.size else 0
+
+
+def _is_at_an_end(values: Array, value: float, least: float) -> bool:
+    margin = thresholds.BROKEN_OFF_STEPS * least
+    return not values.min() + margin < value < values.max() - margin
+
+
+def _unanswered(values: Array, u: Array, begin: int) -> tuple[int, int]:
+    """For how many rows the last stand, from `begin` on, leaves an input's move unanswered, 0 where none moves so far; and the most rows
+    in which it answers elsewhere."""
+    far = thresholds.MOVED_FAR * np.ptp(u, axis=0)
+    if not np.any(far > 0.0):
+        return 0, 0
+    here = _moved_at(u[begin:], far)
+    if here is None:
+        return 0, 0
+    asked = np.linspace(0, begin - 1, min(begin, thresholds.ASKED)).astype(int) if begin else np.zeros(0, int)
+    answers = [_answered_after(values[row:], u[row:], far) for row in asked.tolist()]
+    known = [rows for rows in answers if rows is not None]
+    return (len(values) - 1 - begin - here, max(known)) if len(known) >= thresholds.LEAST_ANSWERS else (0, 0)
+
+
+def _answered_after(values: Array, u: Array, far: Array) -> int | None:
+    """Rows from where an input has moved `far` (inputs,) to the output's first move, 0 where that is earlier; None where no input does."""
+    moved = _moved_at(u, far)
+    changed = np.flatnonzero(values != values[0])
+    return None if moved is None or not changed.size else max(0, int(changed[0]) - moved)
+
+
+def _moved_at(u: Array, far: Array) -> int | None:
+    """The first row at which an input (n, inputs) is `far` (inputs,) from its first; None where none comes so far."""
+    away: NDArray[np.bool_] = (np.abs(u - u[0]) >= np.where(far > 0.0, far, np.inf)).any(axis=1)
+    return int(np.argmax(away)) if away.any() else None
