@@ -56,8 +56,10 @@ def off_findings(log: RunLog, name: str, bound: BoundPlant, steps: Mapping[str, 
         if str(expression) not in states or moves.size < 2 or not moves.any():
             continue
         near = moves[-1 - thresholds.AROUND_STAND_ROWS : -1].max(initial=0.0)
+        usual = float(np.percentile(moves, thresholds.USUAL_MOVE_PERCENT))
         least = max(float(moves[moves > 0.0].min()), step)
-        if moves[-1] > thresholds.BROKEN_OFF * max(near, least) and moves[-1] >= thresholds.LEAST_SEAM_STEPS * least:
+        far = max(thresholds.BROKEN_OFF * max(near, least), usual, thresholds.LEAST_SEAM_STEPS * least)
+        if moves[-1] > far:
             off = np.arange(len(log.t_s)) >= begin
             span = (float(log.t_s[begin]), float(log.t_s[-1]))
             sentence = (

@@ -7,6 +7,7 @@ import numpy as np
 
 from logcheck import thresholds
 from logcheck.ends import off_findings
+from logcheck.exchanged import exchange_findings
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.locked import locked_findings
 from logcheck.motion import motion_findings
@@ -48,7 +49,7 @@ def plant_facts(bound: BoundPlant) -> PlantFacts:
 
 def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
     """What is odd about the numbers of a log of this plant."""
-    slow = list(_time_unit(log, name, bound))
+    slow = [*_time_unit(log, name, bound), *exchange_findings(log, name, bound)]
     yield from slow
     if any(entry.finding.severity == REFUSE for entry in slow):
         return

@@ -69,6 +69,15 @@ ANSWER_ROWS = Count(10, "rows", "unanswered at least")
 LEAST_ANSWERS = Count(20, "answers", "fewer do not tell how an output answers")
 ASKED = Count(200, "rows", "of a log, spread evenly: time")
 
+# exchanged
+STANDS_SHARE = Limit(0.9, "share of rows", "in which a command that is switched by hand stands")
+LEAPS_SHARE = Limit(0.1, "share of a column's range", "that such a command moves by at once")
+LEAST_LEAPS = Count(5, "leaps", "fewer may be slips of a sensor")
+CHANGES_SHARE = Limit(
+    0.1, "share of rows", "in which an axis that moves is read anew, also where its encoder is coarse"
+)
+CREEPS_SHARE = Limit(0.02, "share of a column's range", "that an axis moves by from row to row")
+
 # held
 LONGEST_HOLD_ROWS = Count(64, "rows", "longest hold from one reading to the next")
 LEAST_HELD_CHANGES = Count(60, "changes", "fewer changes show no rhythm")

@@ -186,6 +186,13 @@ def _usual_move(off: Array) -> float:
     return float(often if often > 0.0 else most)
 
 
+def _ends_off(values: Array, bound: float) -> list[bool]:
+    """Whether the first of three readings is far off the way of the others, which are near one another, as one made before the sensor
+    was ready is."""
+    off = abs(float(values[0] - (2.0 * values[1] - values[2])))
+    return [bool(0.0 < bound < off and abs(float(values[1] - values[2])) < 0.1 * off)]
+
+
 def _glitches(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
     """Single rows far off both neighbours, which agree with each other: no motion does that."""
     values = log.column(column)
@@ -200,7 +207,7 @@ def _glitches(log: RunLog, name: str, column: str, step: float) -> Iterator[Foun
         inner = (
             (off > bound) & (across < 0.25 * off) & (before * after > 0.0) if bound > 0.0 else np.zeros(len(off), bool)
         )
-    rows: Rows = np.concatenate([[False], inner, [False]])
+    rows: Rows = np.concatenate([_ends_off(values[:3], bound), inner, _ends_off(values[:-4:-1], bound)])
     if rows.any():
         count, at = int(rows.sum()), log.t_s[rows]
         sentence = f"{column} leaps away and back in {in_words(count, 'row')}, first at {at[0]:g} s; left out"

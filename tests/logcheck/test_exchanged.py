@@ -1,0 +1,43 @@
+"""A command and an axis in each other's place are told before anything is concluded; a column that a hand switches is none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from logcheck.integrity import demand, examine
+from records.errors import BadInput
+from records.log import RunLog
+from sim.bind import BoundPlant
+from tests.own_plants import WORKING
+from twinlaw import fly, load
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> BoundPlant:
+    return load(str(WORKING["plain"].write(tmp_path_factory.mktemp("arm"), "my_arm")))
+
+
+@pytest.fixture(scope="module")
+def log(arm: BoundPlant) -> RunLog:
+    return fly(arm)
+
+
+def test_an_input_in_the_place_of_an_axis_is_refused_by_name(arm: BoundPlant, log: RunLog) -> None:
+    exchanged = replace(log, u=log.y, y=log.u)
+    with pytest.raises(BadInput, match=r"u_V and theta_rad stand in each other's place.*exchange u_V and theta_rad"):
+        demand(examine([exchanged], arm, names=["log"]))
+
+
+@pytest.mark.parametrize("hand", [False, True])
+def test_inputs_that_stand_or_creep_beside_an_axis_are_no_exchange(arm: BoundPlant, log: RunLog, hand: bool) -> None:
+    u = log.u if hand else np.sin(0.05 * np.arange(len(log.u)))[:, None]
+    assert "columns" not in [found.kind for found in examine([replace(log, u=u)], arm, names=["log"]).findings]
+
+
+def test_a_first_reading_made_before_the_sensor_was_ready_is_left_out(arm: BoundPlant, log: RunLog) -> None:
+    """Truth: one reading of 3 rad in front of an axis at rest."""
+    y = log.y.copy()
+    y[0] = 3.0
+    (found,) = [entry for entry in examine([replace(log, y=y)], arm, names=["log"]).findings if entry.kind == "glitch"]
+    assert (found.rows, found.start_s) == (1, 0.0)
