@@ -1,11 +1,15 @@
-"""Angles that no mass could have: as far from row to row as over the whole run."""
+"""Angles that no mass could have: as far from row to row as over the whole run.
+
+An input and an output in each other's place: what is called an axis stands and leaps as a command does, while what is called a command
+moves as an axis does. No mass leaps from rest to rest within one row, time and again.
+"""
 
 from collections.abc import Iterator
 
 import numpy as np
 
 from logcheck import thresholds
-from logcheck.finding import REFUSE, Finding, Found
+from logcheck.finding import REFUSE, Array, Finding, Found
 from records.log import RunLog
 from sim.bind import BoundPlant
 
@@ -27,3 +31,42 @@ def motion_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found
             )
             remedy = f"check the order of the rows and what was read as {column}"
             yield Found(Finding("no_motion", name, column, *span, sentence, REFUSE, 0, "an angle that moves", remedy))
+
+
+def exchange_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
+    """The first output of an axis that is a staircase, with the first input that is none and changes all along."""
+    states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
+    of_axes = [output for output, expression in bound.model.outputs.items() if str(expression) in states]
+    stairs = [output for output in of_axes if _is_a_staircase(log.column(output))]
+    moving = [column for column in log.columns.inputs if _moves_on(log.column(column))]
+    if not stairs or not moving:
+        return
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    got = (
+        f"{moving[0]} and {stairs[0]} stand in each other's place: {stairs[0]} stands and leaps from row to row as a command does, "
+        f"{moving[0]} moves as an axis does"
+    )
+    expected, remedy = "columns that are what they are called", f"exchange {moving[0]} and {stairs[0]}"
+    yield Found(Finding("columns", name, stairs[0], *span, got, REFUSE, 0, expected, remedy))
+
+
+def _moves(values: Array) -> tuple[Array, float]:
+    """How far a column moves from row to row where it is read, and its range."""
+    present = values[np.isfinite(values)]
+    return np.abs(np.diff(present)), float(np.ptp(present)) if present.size else 0.0
+
+
+def _is_a_staircase(values: Array) -> bool:
+    """Whether a column stands in most rows, and leaps by much of its range where it does not."""
+    moves, whole = _moves(values)
+    leaps = moves[moves > 0.0]
+    stands = leaps.size <= (1.0 - thresholds.STANDS_SHARE) * moves.size
+    return bool(stands and leaps.size >= thresholds.LEAST_LEAPS and np.median(leaps) > thresholds.LEAPS_SHARE * whole)
+
+
+def _moves_on(values: Array) -> bool:
+    """Whether a column changes in many rows, each time by little of its range."""
+    moves, whole = _moves(values)
+    changes = moves[moves > 0.0]
+    often = changes.size > thresholds.CHANGES_SHARE * moves.size
+    return bool(often and np.median(changes) < thresholds.CREEPS_SHARE * whole)

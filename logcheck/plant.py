@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from logcheck import thresholds
-from logcheck.ends import off_findings
-from logcheck.exchanged import exchange_findings
-from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
-from logcheck.locked import locked_findings
-from logcheck.motion import motion_findings
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
+from logcheck.grid import are_whole, grid_findings, is_on, some
+from logcheck.motion import exchange_findings, motion_findings
+from logcheck.standing import locked_findings, off_findings
 from logcheck.units import rate_unit, reference_unit, rotor_unit
 from records.errors import BadInput
 from records.log import RunLog
@@ -19,8 +18,6 @@ from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
 
 DEGREE = np.degrees(1.0)
-SAMPLE = 20_000  # rows that a test of a grid or a unit looks at
-WHOLE = 1e-6  # counts that were computed are whole numbers to this
 
 
 @dataclass(frozen=True)
@@ -60,7 +57,7 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
         return
     for column in log.columns.outputs:
         yield from _stops(log, name, column, facts)
-        yield from _grid(log, name, column, facts.steps.get(column, 0.0))
+        yield from grid_findings(log, name, column, facts.steps.get(column, 0.0))
         yield from reference_unit(log, name, column)
     yield from locked_findings(log, name, bound)
     yield from off_findings(log, name, bound, facts.steps)
@@ -83,12 +80,12 @@ def _time_unit(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
 
 def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[Found]:
     """Degrees or counts where radians should be, where the numbers are an angle of the plant in that unit; else no angle at all."""
-    values, step = _some(log.column(column)), facts.steps.get(column, 0.0)
+    values, step = some(log.column(column)), facts.steps.get(column, 0.0)
     if not column.endswith("_rad") or values.size < 2 or values.min() == values.max():
         return
     widest, greatest = _widest(column, facts), _greatest(values)
-    on_grid = step > 0.0 and _is_on(values, step)
-    whole = bool(np.all(np.abs(values - np.round(values)) < WHOLE))
+    on_grid = step > 0.0 and is_on(values, step)
+    whole = are_whole(values)
     is_beyond = np.isfinite(widest) and greatest > max(
         thresholds.FAR_BEYOND * widest, widest + 3.0 * thresholds.BEYOND_STOP_rad
     )
@@ -101,7 +98,7 @@ def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Itera
         and 3.0 < greatest <= (min(widest, thresholds.MOST_rad) + thresholds.BEYOND_STOP_rad) / step
     ):
         unit = "encoder counts"
-    elif not on_grid and ((step > 0.0 and _is_on(values, step * DEGREE)) or (is_beyond and in_degrees)):
+    elif not on_grid and ((step > 0.0 and is_on(values, step * DEGREE)) or (is_beyond and in_degrees)):
         unit = "degrees"
     if unit is not None:
         sentence = f"{column} is in {unit}: up to {greatest:.4g}"
@@ -112,11 +109,11 @@ def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Itera
 
 def _no_angle(log: RunLog, name: str, column: str, facts: PlantFacts) -> Found:
     """An output far beyond its stops in no unit that is known: exchanged with another where both would fit, else only that."""
-    widest, greatest = _widest(column, facts), _greatest(_some(log.column(column)))
+    widest, greatest = _widest(column, facts), _greatest(some(log.column(column)))
     sentence = f"{column} is up to {greatest:.4g}, far beyond its axis' stop at {widest:.4g}"
     span = (float(log.t_s[0]), float(log.t_s[-1]))
     for other in log.columns.outputs:
-        others = _some(log.column(other))
+        others = some(log.column(other))
         fits = greatest <= _widest(other, facts) + thresholds.BEYOND_STOP_rad if other in facts.stops else False
         if fits and others.size and _greatest(others) <= widest + thresholds.BEYOND_STOP_rad:
             sentence += f", and {other} up to {_greatest(others):.4g}: each would fit in the other's place"
@@ -143,7 +140,7 @@ def _input_unit(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
     for column in log.columns.inputs:
         low, high = facts.limits.get(column, (-np.inf, np.inf))
         widest = max(abs(low), abs(high))
-        greatest = _greatest(_some(log.column(column)))
+        greatest = _greatest(some(log.column(column)))
         if not np.isfinite(widest) or not greatest > 3.0 * widest:
             continue
         unit = "percent" if greatest <= thresholds.FULL_percent else "another unit"
@@ -198,108 +195,3 @@ def _stops(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[F
                 kind, name, column, float(at[0]), float(at[-1]), sentence, severity, count * (left_out is not None)
             )
             yield Found(finding, left_out)
-
-
-def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
-    """A measured angle lies on its encoder's grid; one that lies on none is simulated, filtered or interpolated."""
-    values = _some(log.column(column))
-    if step <= 0.0 or values.size < 20 or not step < np.ptp(values) < thresholds.FINEST_GRID * step:
-        return
-    held = _phase(values, step)
-    own = grid_step(values)
-    span = (float(log.t_s[0]), float(log.t_s[-1]))
-    digits = printed_digits(values)
-    if digits is not None and not _by_chance(values, step, digits):
-        yield _few_digits(log, name, column, step, digits)
-    elif held < thresholds.OFF_GRID and own == 0.0:
-        sentence = f"{column} does not lie on the encoder's grid of {step:.5g} or on any other: simulated, filtered or interpolated numbers"
-        yield Found(Finding("simulated_looking", name, column, *span, sentence))
-    elif own > 0.0 and abs(own / step - 1.0) > 0.01 and not 0.99 < own / step - round(own / step) + 1.0 < 1.01:
-        yield Found(
-            Finding(
-                "other_grid",
-                name,
-                column,
-                *span,
-                f"{column} moves in steps of {own:.5g}, not of {step:.5g} as the plant states",
-            )
-        )
-
-
-def _few_digits(log: RunLog, name: str, column: str, step: float, digits: int) -> Found:
-    """A column printed with few digits: what is rounded by more than its sensor does is left out; where that is most, it is refused."""
-    values = log.column(column)
-    rounded_to = _rounded_to(np.where(np.isfinite(values) & (values != 0.0), values, step), digits)
-    coarse: Rows = rounded_to > step * (1.0 + WHOLE)
-    span = (float(log.t_s[0]), float(log.t_s[-1]))
-    most = f"{float(rounded_to.max()):.2g}"
-    sentence = f"{column} is printed with {in_words(digits, 'digit')}, in steps of up to {most} where its sensor has {step:.5g}"
-    remedy = f"print nine digits, or state {most} as the sensor's resolution in the plant file"
-    if coarse.mean() > thresholds.COARSE_SHARE:
-        return Found(Finding("few_digits", name, column, *span, sentence, REFUSE, 0, "all digits", remedy))
-    if not coarse.any():
-        return Found(
-            Finding("few_digits", name, column, *span, f"{sentence}, and so is rounded twice; print nine digits")
-        )
-    count = int(coarse.sum())
-    told = f"{sentence}: {in_words(count, 'reading')} with coarser ones than that left out; {remedy}"
-    at = log.t_s[coarse]
-    return Found(Finding("few_digits", name, column, float(at[0]), float(at[-1]), told, EXCLUDE, count), coarse)
-
-
-def _rounded_to(values: Array, digits: int) -> Array:
-    """The last of so many significant digits of each number, none of them 0."""
-    return np.asarray(10.0 ** (np.floor(np.log10(np.abs(values))) + 1 - digits))
-
-
-def _by_chance(values: Array, step: float, digits: int) -> bool:
-    """Whether a sensor's own steps look like few digits: readings of 0.001 each up to 0.999, and 1 besides, which needs no more."""
-    own = values[values != 0.0]
-    coarse = np.unique(own[_rounded_to(own, digits) > step * (1.0 + WHOLE)])
-    return 0 < coarse.size < thresholds.LEAST_COARSE and _phase(values, step) > thresholds.ON_GRID
-
-
-def printed_digits(values: Array) -> int | None:
-    """The significant digits that numbers were printed with; None for more than FEW_DIGITS, and for a fixed number of decimals, a grid."""
-    size = np.abs(values[values != 0.0])
-    if not size.size:
-        return None
-    exponents = np.floor(np.log10(size))
-    for digits in range(1, thresholds.FEW_DIGITS + 1):
-        if _are_whole(size * 10.0 ** (digits - 1 - exponents)):
-            return None if _are_whole(size * 10.0 ** (digits - 1 - exponents.max())) else digits
-    return None
-
-
-def _are_whole(values: Array) -> bool:
-    return bool(np.all(np.abs(values - np.round(values)) < WHOLE))
-
-
-def grid_step(values: Array) -> float:
-    """The step of the grid on which all of `values` lie, as their least difference; 0 where there is none."""
-    distinct = np.unique(values)
-    gaps = np.diff(distinct)
-    gaps = gaps[gaps > 1e-9 * max(float(np.abs(distinct).max()), 1e-9)]
-    if gaps.size < 5:
-        return 0.0
-    step = float(gaps.min())
-    multiples = np.round(gaps / step)
-    if multiples.max() > 1e4:
-        return 0.0
-    step = float(gaps.sum() / multiples.sum())
-    return step if _phase(distinct, step) > thresholds.ON_GRID and distinct.size < 0.9 * values.size + 5 else 0.0
-
-
-def _phase(values: Array, step: float) -> float:
-    """Length of the mean of exp(2 pi i y / step): 1 on the grid whatever its offset."""
-    return float(np.abs(np.mean(np.exp(2j * np.pi * (values / step)))))
-
-
-def _is_on(values: Array, step: float) -> bool:
-    return _phase(np.unique(values), step) > thresholds.ON_GRID and np.unique(np.round(values / step)).size > 3
-
-
-def _some(values: Array) -> Array:
-    """At most SAMPLE finite values, from all over the column."""
-    present = values[np.isfinite(values)]
-    return present[:: max(1, len(present) // SAMPLE)]

@@ -111,6 +111,7 @@ LEAST_COARSE = Count(
 COARSE_SHARE = Limit(
     0.5, "share of rows", "rounded by more than the sensor does: what is left would be of small angles alone"
 )
+COARSER = Limit(10.0, "steps", "that no reading stands between by chance")
 ON_GRID = Limit(0.97, "mean phase", "1 for numbers on the grid, 0 for any")
 OFF_GRID = Limit(0.6, "mean phase", "1 for numbers on the grid, 0 for any")
 BEYOND_STOP_rad = Limit(0.1, "rad", "offsets and scales of a sensor may carry an angle beyond its stop")

@@ -7,10 +7,10 @@ import numpy as np
 
 from logcheck import thresholds
 from logcheck.dead import dead_findings, read_again
-from logcheck.ends import end_findings
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.held import held_findings
 from logcheck.seams import seam_findings
+from logcheck.standing import end_findings
 from logcheck.zeros import zero_findings
 from records.log import RunLog
 from sim.columns import reference_name

@@ -8,7 +8,7 @@ import pytest
 from logcheck.integrity import demand, examine
 from records.errors import BadInput
 from records.log import RunLog
-from sim.bind import BoundPlant
+from sim.bind import BoundPlant, bind
 from tests.own_plants import WORKING
 from twinlaw import fly, load
 
@@ -41,3 +41,14 @@ def test_a_first_reading_made_before_the_sensor_was_ready_is_left_out(arm: Bound
     y[0] = 3.0
     (found,) = [entry for entry in examine([replace(log, y=y)], arm, names=["log"]).findings if entry.kind == "glitch"]
     assert (found.rows, found.start_s) == (1, 0.0)
+
+
+@pytest.mark.parametrize(("decimals", "told"), [(9, False), (2, True)])
+def test_a_fixed_number_of_decimals_far_coarser_than_the_sensor_is_told(
+    arm: BoundPlant, log: RunLog, decimals: int, told: bool
+) -> None:
+    """Truth: an encoder of 10 million steps a turn, written to a hundredth of a radian."""
+    fine = bind(replace(arm.plant, sensors={"theta_rad": 6e-7}))
+    rounded = replace(log, y=np.round(log.y + 1e-3 * np.sin(np.arange(len(log.y)))[:, None], decimals))
+    kinds = [found.kind for found in examine([rounded], fine, names=["log"]).findings]
+    assert ("other_grid" in kinds) is told
