@@ -61,9 +61,20 @@ def duplicate_findings(
     for index, (held, held_name) in enumerate(zip(holdout, holdout_names, strict=True), len(logs)):
         for log, name in zip(logs, names, strict=True):
             rows = shared_rows(log, held)
-            if rows.any():
+            alike = _alike_at_first(log, held)
+            if rows[alike:].any() or rows.sum() > thresholds.BEGINS_ALIKE * len(rows):
                 sentence = f"{int(rows.sum())} rows of the hold-out log stand in {name} too"
                 yield index, _found("holdout_overlap", held, held_name, rows, sentence, REFUSE)
+            elif rows.any():
+                sentence = f"its first {alike} rows are those of {name} too: both begin with the same manoeuvre, reading for reading"
+                yield index, _found("begins_alike", held, held_name, rows, sentence, NOTE)
+
+
+def _alike_at_first(one: RunLog, other: RunLog) -> int:
+    """How many rows from the first on two logs have in common, as flights of a simulation or a coarse sensor that begin alike have."""
+    rows = min(len(one.t_s), len(other.t_s))
+    same = (one.u[:rows] == other.u[:rows]).all(axis=1) & (one.y[:rows] == other.y[:rows]).all(axis=1)
+    return rows if same.all() else int(np.argmin(same))
 
 
 def _found(kind: str, log: RunLog, name: str, rows: Rows, sentence: str, severity: str) -> Found:

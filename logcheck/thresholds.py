@@ -10,6 +10,7 @@ CALENDAR_S = Limit(1e6, "s", "eleven days: no run starts so late by its own cloc
 # between
 WINDOW_DOUBLINGS = Count(5, "log2 rows", "windows of 32 rows are hashed to find a training log's rows")
 LEAST_SHARED_CHANGES = Count(8, "rows", "rest is alike in all logs")
+BEGINS_ALIKE = Limit(0.2, "share of a hold-out's rows", "that are a common manoeuvre's: more are a copy")
 ANGLE_BINS = Count(24, "bins", "bins of the angle for holding inputs")
 LEAST_STEADY_ROWS = Count(100, "rows", "quasi-steady rows of a bin in both logs")
 STEADY_RAD_S = Limit(0.05, "rad/s", "slower motion is quasi-steady")

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from logcheck.between import duplicate_findings
 from logcheck.integrity import demand, examine
 from records.errors import BadInput
 from records.log import RunLog
@@ -52,3 +53,17 @@ def test_a_fixed_number_of_decimals_far_coarser_than_the_sensor_is_told(
     rounded = replace(log, y=np.round(log.y + 1e-3 * np.sin(np.arange(len(log.y)))[:, None], decimals))
     kinds = [found.kind for found in examine([rounded], fine, names=["log"]).findings]
     assert ("other_grid" in kinds) is told
+
+
+@pytest.mark.parametrize(("rows", "kind"), [(200, "begins_alike"), (800, "holdout_overlap")])
+def test_a_hold_out_that_begins_as_a_training_run_does_is_no_copy_of_it(
+    arm: BoundPlant, log: RunLog, rows: int, kind: str
+) -> None:
+    """Truth: the first tenth of 2001 rows is the same manoeuvre from rest without noise; two fifths are a copy."""
+    t_s = log.t_s
+    u = 0.3 * np.sin(9.0 * t_s)[:, None]
+    y = 0.1 * np.cos(7.0 * t_s)[:, None]
+    u[:rows], y[:rows] = log.u[:rows] + np.sin(t_s[:rows])[:, None], log.y[:rows] + np.cos(t_s[:rows])[:, None]
+    trained = replace(log, u=log.u + np.sin(t_s)[:, None], y=log.y + np.cos(t_s)[:, None])
+    found = duplicate_findings([trained], ["log"], [replace(log, u=u, y=y)], ["held"])
+    assert [entry.finding.kind for _, entry in found] == [kind]
