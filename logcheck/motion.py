@@ -4,14 +4,18 @@ An input and an output in each other's place: what is called an axis stands and 
 moves as an axis does. No mass leaps from rest to rest within one row, time and again.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 
 from logcheck import thresholds
 from logcheck.finding import REFUSE, Array, Finding, Found
+from recordings.mapping.wraps import angle_past_its_end
 from records.log import RunLog
+from records.text.units import unit_of
 from sim.bind import BoundPlant
+
+COUNTER = 2.0**16  # of an encoder's counts, as timers have them
 
 
 def motion_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
@@ -31,6 +35,26 @@ def motion_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found
             )
             remedy = f"check the order of the rows and what was read as {column}"
             yield Found(Finding("no_motion", name, column, *span, sentence, REFUSE, 0, "an angle that moves", remedy))
+
+
+def wrap_findings(log: RunLog, name: str, steps: Mapping[str, float], positions: Collection[str]) -> Iterator[Found]:
+    """Positions that are kept within a turn, or in a counter of 16 bits, and leap by all of it where they leave it."""
+    for column in log.columns.outputs:
+        if column not in positions:
+            continue
+        values, step = log.column(column), steps.get(column, 0.0)
+        turn = [2.0 * np.pi] if unit_of(column) == "rad" else []
+        whole, leaps, size = angle_past_its_end(values, [*turn, *([COUNTER * step] if step > 0.0 else [])])
+        usual = float(np.nanpercentile(np.abs(np.diff(whole)), thresholds.USUAL_SPEED_PERCENT)) if leaps else 0.0
+        if not leaps or np.nanmax(np.abs(np.diff(whole))) > thresholds.SEAM_FASTER * max(usual, step):
+            continue
+        at = log.t_s[1:][np.abs(np.diff(values)) >= 0.5 * size]
+        what = "a turn" if turn and size == turn[0] else "65536 counts"
+        sentence = f"{column} leaps by {what} {'once' if leaps == 1 else f'{leaps} times'}, first at {at[0]:.6g} s: it was kept within that"
+        expected, remedy = "an angle that is counted on", "`twinlaw import` counts it on"
+        yield Found(
+            Finding("wrapped", name, column, float(at[0]), float(at[-1]), sentence, REFUSE, 0, expected, remedy)
+        )
 
 
 def exchange_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:

@@ -9,6 +9,7 @@ from logcheck import thresholds
 from logcheck.dead import dead_findings, read_again
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.held import held_findings
+from logcheck.motion import wrap_findings
 from logcheck.seams import seam_findings
 from logcheck.standing import end_findings
 from logcheck.zeros import zero_findings
@@ -75,6 +76,10 @@ def value_findings(
 ) -> Iterator[Found]:
     """What is odd about the numbers, whatever the plant; `positions` are outputs that a mass moves."""
     yield from _missing_numbers(log, name)
+    wrapped = list(wrap_findings(log, name, steps, positions))
+    yield from wrapped
+    if wrapped:  # its leaps are neither glitches nor other recordings
+        return
     yield from _constant(log, name)
     yield from _copies(log, name)
     zeros = [

@@ -67,3 +67,17 @@ def test_a_hold_out_that_begins_as_a_training_run_does_is_no_copy_of_it(
     trained = replace(log, u=log.u + np.sin(t_s)[:, None], y=log.y + np.cos(t_s)[:, None])
     found = duplicate_findings([trained], ["log"], [replace(log, u=u, y=y)], ["held"])
     assert [entry.finding.kind for _, entry in found] == [kind]
+
+
+@pytest.mark.parametrize(("size", "told"), [(2.0 * np.pi, "a turn"), (65536 * 0.0005, "65536 counts")])
+def test_an_angle_that_is_kept_within_a_turn_or_a_counter_is_refused_with_what_counts_it_on(
+    arm: BoundPlant, log: RunLog, size: float, told: str
+) -> None:
+    """Truth: ten turns in 20 s, or forty metres' worth of counts; counted on, nothing is said of it."""
+    step = 0.0005
+    fine = bind(replace(arm.plant, sensors={"theta_rad": step}))
+    way = (3.0 * log.t_s + np.sin(log.t_s))[:, None] * (1.0 if told == "a turn" else 4.0)
+    whole, kept = (step * np.round(y / step) for y in (way, np.mod(way, size)))
+    with pytest.raises(BadInput, match=f"theta_rad leaps by {told} .*`twinlaw import` counts it on"):
+        demand(examine([replace(log, y=kept)], fine, names=["log"]))
+    assert "wrapped" not in [found.kind for found in examine([replace(log, y=whole)], fine, names=["log"]).findings]
