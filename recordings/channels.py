@@ -65,7 +65,9 @@ def log_of_channels(
         sample_period_s=float(f"{min(float(np.median(np.diff(t))) for t, _ in clocked.values() if t.size > 1):.9g}"),
         loop=loop or ("closed" if any("_ref" in name for name in extra) else "open"),
         t_s=t_s,
-        u=np.column_stack([_input(channels[name], t_s, name, where) for name in columns.inputs]),
+        u=np.column_stack([_input(channels[name], t_s, name, where) for name in columns.inputs])
+        if columns.inputs
+        else np.zeros((t_s.size, 0)),
         y=np.column_stack([_sampled(outputs[name], t_s) for name in columns.outputs]),
         extra={name: _held(channels[name], t_s) for name in extra},
     )

@@ -114,7 +114,9 @@ def in_order(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -
 
 
 def from_the_inputs(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -> tuple[Span, list[str]]:
-    """The span from where every input is known, and what is to be said of the samples in front of it."""
+    """The span from where every input is known, and what is to be said of the samples in front of it; as it is for a plant without any."""
+    if not columns.inputs:
+        return span, []
     firsts = {name: _first_s(channels[name], span) for name in columns.inputs}
     name = max(firsts, key=lambda name: firsts[name])
     begin_s = firsts[name]

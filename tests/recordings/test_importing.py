@@ -7,10 +7,11 @@ import pytest
 from scipy.io import savemat
 
 from recordings.channels import Channel, Span, log_of_channels
-from recordings.importing import columns_of, log_of_contents
+from recordings.importing import columns_of, import_file, log_of_contents
 from recordings.mapping.mapping import ColumnMapping
 from recordings.signals import Contents, Signal
 from records.errors import BadInput
+from tests.own_plants import WORKING
 from tests.recordings.here import imported_here
 from tests.recordings.runs import CE150, FOUR, RUN, T_S, mapped, save_run
 
@@ -162,3 +163,14 @@ def test_a_signal_is_shown_with_what_the_file_calls_it_where_that_is_another_nam
     with pytest.raises(BadInput) as refused:
         log_of_contents(Contents(signals), "rec.mat", ColumnMapping(), columns_of("ce150"))
     assert "rec.Y(1).Data (Model/Elevation/Out1) [deg], rec.psi [deg]" in refused.value.got
+
+
+def test_a_log_of_a_plant_without_inputs_is_its_outputs_and_a_wrapped_angle_is_counted_on(tmp_path: Path) -> None:
+    """Truth: 3 rad/s for 10 s, written within half a turn to either side."""
+    plant = WORKING["free_swing"].write(tmp_path, "my_swing")
+    t_s = 0.01 * np.arange(1001)
+    rows = "\n".join(f"{t:.2f},{(3.0 * t + np.pi) % (2.0 * np.pi) - np.pi:.9f}" for t in t_s)
+    (tmp_path / "log.csv").write_text(f"t_s,theta_rad\n{rows}\n")
+    log = import_file(tmp_path / "log.csv", ColumnMapping(plant=str(plant))).log
+    assert log.u.shape == (1001, 0)
+    np.testing.assert_allclose(np.diff(log.y[:, 0]), 0.03, atol=1e-8)
