@@ -212,6 +212,11 @@ def test_the_curves_show_where_the_improved_plant_gains_most_in_the_output_of_th
     assert log.t_s[rows][-1] >= 12.98
     told = curves(log)
     assert "errs most against the improved one, in phi" in told.sentences[0]
+    brief = {
+        name: {output: values[:300] for output, values in getattr(log, name).items()}
+        for name in ("measured", "nominal", "before", "after")
+    }
+    assert "The 8 s" not in curves(replace(log, t_s=log.t_s[:300], **brief)).sentences[0]
     assert "error of phi" in told.plots[0]
 
 

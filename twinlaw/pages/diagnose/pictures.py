@@ -41,18 +41,21 @@ def curves(log: Predicted) -> Section:
         panels.append(_followed(log, output, span, improved))
         if improved:
             panels.append(_errors(log, output, span))
+    is_part = float(log.t_s[-1] - log.t_s[0]) > _ZOOM_S
     if chosen is None:
-        told = f"The {_ZOOM_S:g} s in which the stated plant errs most."
+        told = [f"The {_ZOOM_S:g} s in which the stated plant errs most."] if is_part else []
     else:
-        told = (
+        part = (
             f"The {_ZOOM_S:g} s in which the best re-tuned plant errs most against the improved one, in {shown(chosen[0])[0]}, "
-            "where it gains most. Below each output are the errors of both, on a scale of their own."
+            "where it gains most."
         )
+        told = [*([part] if is_part else []), "Below each output are the errors of both, on a scale of their own."]
     return Section(
         f"Predicted and measured: {log.name}",
         (
-            told,
-            "Each curve starts afresh every second from what was measured until then; the stated plant may leave the picture.",
+            " ".join(told) or "The whole log.",
+            "Each curve starts afresh where it begins anew, every second in a log of 3 s and more, from what was measured until then; the "
+            "stated plant may leave the picture.",
         ),
         plots=(stack(panels, "time [s]"),),
     )

@@ -76,7 +76,7 @@ def _place(diagnosis: Diagnosis, model: Model) -> Section:
     told = "" if p is None else alarm_in_words(diagnosis, p)
     alarm = f"{told[:1].upper()}{told[1:]}." if told else ""
     lit = "The rig as blocks, from the commands on the left to the sensors on the right"
-    lit += "; the warmer a block, the more of the gap lies there." if shares else "."
+    lit += "; the warmer and darker a block, the more of the gap lies there." if shares else "."
     return Section(
         "Where it lies" if gap else "The rig", tuple(filter(None, (lit, alarm))), plots=(block_diagram(model, shares),)
     )

@@ -32,8 +32,9 @@ def shrinkage_sections(shrinkage: Shrinkage, found: bool, retuned: str = "") -> 
 def _predictions(shrinkage: Shrinkage, found: bool, retuned: str) -> Section:
     purpose = "to find the effect" if found else "to re-tune"
     sentences = [
-        f"Errors of free-running predictions over windows of 1 s on logs that were not used {purpose}. "
-        "The lower a bar, the better; below the green one noise decides.",
+        "Errors of free-running predictions over windows of 1 s, of a log shorter than 3 s over its last third, on logs that were "
+        f"not used {purpose}. "
+        "The lower a bar, the better; below the noise floor noise decides.",
         "Re-tuned means that parameters moved within what the plant file states of them: that is no gap.",
         *([retuned] if retuned else []),
     ]

@@ -18,7 +18,7 @@ from twinlaw.pages.identify.frequency_tables import (
     pair_heading,
     pair_rows,
 )
-from twinlaw.pages.identify.summary import SCALE, estimate_heading, estimate_rows
+from twinlaw.pages.identify.summary import SCALE, estimate_heading, estimate_rows, remarked
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.quality import quality_section, quality_sentence
 
@@ -43,7 +43,7 @@ def frequency_page(
     ]
     return Page(
         title=f"{found.result.plant.name}: identified in the frequency domain",
-        verdict=f"{told} of {len(estimates)} parameters identified; J = {found.fit.J:.1f}; {len(found.notes)} remarks.",
+        verdict=f"{told} of {len(estimates)} parameters identified; J = {found.fit.J:.1f}; {remarked(len(found.notes))}.",
         colour=quality.colour,
         why=quality_sentence(quality),
         facts=(("Equations", found.result.plant.model),),

@@ -23,6 +23,7 @@ from twinlaw.pages.identify.summary import (
     estimate_rows,
     fit_rows,
     held_out_rows,
+    remarked,
 )
 from twinlaw.pages.measured import measured
 from twinlaw.pages.page import Page, Section, Table
@@ -55,7 +56,7 @@ def identify_page(
         title=f"{result.plant.name}: identified",
         verdict=(
             f"{result.warning}. " * bool(result.warning)
-            + f"{told} of {len(result.estimates)} parameters identified; {len(result.notes)} remarks."
+            + f"{told} of {len(result.estimates)} parameters identified; {remarked(len(result.notes))}."
         ),
         colour=quality.colour,
         why=quality_sentence(quality),

@@ -23,6 +23,11 @@ SCALE = (
 )
 
 
+def remarked(count: int) -> str:
+    """How many remarks there are."""
+    return "1 remark" if count == 1 else f"{count} remarks"
+
+
 def estimate_heading(truth: Mapping[str, float] | None) -> tuple[str, ...]:
     """The heading of `estimate_rows`."""
     return HEADING if truth is None else (*HEADING[:-1], *TRUTH_HEADING, HEADING[-1])
