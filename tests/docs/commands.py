@@ -10,7 +10,7 @@ PAGES = ("README.md", *sorted(f"docs/{path.name}" for path in (ROOT / "docs").gl
 _FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 _INDENTED = re.compile(r"(?:^    [^\n]*\n|^\n(?=    ))+", flags=re.MULTILINE)
 _COMMAND = re.compile(
-    r"(?:\.venv/bin/)?(?:twinlaw|python) |make |cp |diff |mkdir |pip |dask |for |\. |sed |awk |cat |printf "
+    r"(?:\.venv/bin/)?(?:twinlaw|python) |make |cp |diff |head |mkdir |pip |dask |for |\. |sed |awk |cat |printf "
 )
 _CALL = re.compile(r"(?<![\w/-])twinlaw [a-z][a-z-]*(?: [^;&|\n`]*)?")
 
@@ -18,6 +18,11 @@ _CALL = re.compile(r"(?<![\w/-])twinlaw [a-z][a-z-]*(?: [^;&|\n`]*)?")
 def fenced(page: str, language: str) -> list[str]:
     """The page's fenced blocks of a language."""
     return [text for tongue, text in _FENCE.findall((ROOT / page).read_text(encoding="utf-8")) if tongue == language]
+
+
+def tongues(page: str) -> set[str]:
+    """The languages of the page's fenced blocks."""
+    return {tongue for tongue, _ in _FENCE.findall((ROOT / page).read_text(encoding="utf-8"))}
 
 
 def commands(page: str) -> list[str]:
