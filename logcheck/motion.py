@@ -61,7 +61,8 @@ def exchange_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Fou
     """The first output of an axis that is a staircase, with the first input that is none and changes all along."""
     states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
     of_axes = [output for output, expression in bound.model.outputs.items() if str(expression) in states]
-    stairs = [output for output in of_axes if _is_a_staircase(log.column(output))]
+    sensors = bound.plant.sensors
+    stairs = [output for output in of_axes if _is_a_staircase(log.column(output), sensors.get(output, 0.0))]
     moving = [column for column in log.columns.inputs if _moves_on(log.column(column))]
     if not stairs or not moving:
         return
@@ -80,12 +81,13 @@ def _moves(values: Array) -> tuple[Array, float]:
     return np.abs(np.diff(present)), float(np.ptp(present)) if present.size else 0.0
 
 
-def _is_a_staircase(values: Array) -> bool:
-    """Whether a column stands in most rows, and leaps by much of its range where it does not."""
+def _is_a_staircase(values: Array, step: float) -> bool:
+    """Whether a column stands in most rows, and leaps by much of its range where it does not; a step of its sensor is no leap."""
     moves, whole = _moves(values)
     leaps = moves[moves > 0.0]
     stands = leaps.size <= (1.0 - thresholds.STANDS_SHARE) * moves.size
-    return bool(stands and leaps.size >= thresholds.LEAST_LEAPS and np.median(leaps) > thresholds.LEAPS_SHARE * whole)
+    far = max(thresholds.LEAPS_SHARE * whole, thresholds.LEAST_SEAM_STEPS * step)
+    return bool(stands and leaps.size >= thresholds.LEAST_LEAPS and np.median(leaps) > far)
 
 
 def _moves_on(values: Array) -> bool:

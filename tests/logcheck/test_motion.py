@@ -36,6 +36,14 @@ def test_inputs_that_stand_or_creep_beside_an_axis_are_no_exchange(arm: BoundPla
     assert "columns" not in [found.kind for found in examine([replace(log, u=u)], arm, names=["log"]).findings]
 
 
+def test_an_axis_that_moves_by_single_steps_of_its_encoder_is_no_command(arm: BoundPlant, log: RunLog) -> None:
+    """Truth: an axis that creeps to and fro over three steps, each for a second, under an input that moves all along."""
+    step = arm.plant.sensors["theta_rad"]
+    y = step * np.round(1.5 * np.sin(2.0 * log.t_s))[:, None]
+    u = np.sin(5.0 * log.t_s)[:, None]
+    assert "columns" not in [entry.kind for entry in examine([replace(log, u=u, y=y)], arm, names=["log"]).findings]
+
+
 def test_a_first_reading_made_before_the_sensor_was_ready_is_left_out(arm: BoundPlant, log: RunLog) -> None:
     """Truth: one reading of 3 rad in front of an axis at rest."""
     y = log.y.copy()
