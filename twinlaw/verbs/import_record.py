@@ -1,12 +1,12 @@
 """Import a log of another tool, or a record of a published data set, as a run log: SI units, true times, known limits told.
 
-`twinlaw import FILE --plant ce150 --column psi_rad='Pitch [deg]' --out run.csv` takes tables of text, MATLAB, MDF, PX4, Parquet and ROS
-files. A column is the signal of its own name, or what --column says: arithmetic over the file's names, as in psi_rad="elevation_deg*pi/180"
-or u_M_V="ScopeData.signals(1).values(:,2)", for the times t_s too; known units convert by themselves. --mapping FILE.toml uses what is
-kept there and keeps what is said here for the next log. What was found unasked is told. `twinlaw import quanser_aero model_verification
---out mv.csv` imports a record of a data set; a data set without a record lists its records. --from and --until keep a part, in the
-record's own time, as if the rest had not been recorded. --every 5 keeps one row in five, for a record that is sampled much faster than the
-plant moves; an input that changed between two kept rows is then late by up to four rows.
+`twinlaw import FILE --plant ce150 --column psi_rad='Pitch [deg]' --out run.csv` takes tables of text, workbooks, MATLAB, MDF, TDMS, PX4,
+Parquet and ROS files. A column is the signal of its own name, or what --column says: arithmetic over the file's names, as in
+psi_rad="elevation_deg*pi/180" or u_M_V="ScopeData.signals(1).values(:,2)", for the times t_s too; known units convert by themselves.
+--mapping FILE.toml uses what is kept there and keeps what is said here for the next log. What was found unasked is told. `twinlaw import
+quanser_aero model_verification --out mv.csv` imports a record of a data set; a data set without a record lists its records. --from and
+--until keep a part, in the record's own time, as if the rest had not been recorded. --every 5 keeps one row in five, for a record that is
+sampled much faster than the plant moves; an input that changed between two kept rows is then late by up to four rows.
 """
 
 import argparse
