@@ -14,12 +14,28 @@ uint32_t __aeabi_fsub(uint32_t a, uint32_t b);
 uint32_t __aeabi_fmul(uint32_t a, uint32_t b);
 
 /*
+ * The end of a sum that cancelled, with nothing to round: r4 places bring the leading one past bit 31, where it is implied,
+ * and lower the exponent as much. Written out three times: a jump here would be on the dearest path.
+ */
+#define EXACT \
+    "    cmp   r2, r4\n" \
+    "    bls   18f\n" \
+    "    lsls  r3, r4\n" \
+    "    lsrs  r3, r3, #9\n" \
+    "    lsrs  r0, r0, #23\n" \
+    "    subs  r0, r4\n" \
+    "    lsls  r0, r0, #23\n" \
+    "    adds  r0, r3\n" \
+    "    pop   {r4, r5}\n" \
+    "    bx    lr\n"
+
+/*
  * The sign takes part in the sum of the exponents and comes out right: bit 8 of it is the exclusive or, bit 9 is shifted out.
  * The product of two 24-bit significands is that of their upper 8 and lower 16 bits; X is the product >> 16. E is the product's
  * exponent, less one, before normalisation. Where it is below 0, X >> (7 - E) counts least subnormals and so is the result's bits.
  */
 __asm__(".syntax unified\n"
-        ".section .text.__aeabi_fmul, \"ax\", %progbits\n"
+        ".section .text.float_routines, \"ax\", %progbits\n"
         ".global __aeabi_fmul\n"
         ".type __aeabi_fmul, %function\n"
         ".p2align 2\n"
@@ -99,33 +115,28 @@ __asm__(".syntax unified\n"
         "    b     13f\n"
         "12: cmp   r4, #128\n"
         "    beq   21f\n"
-        /* the product is normal: give r1 its leading one at bit 23, and the exponent for that */
-        "13: lsrs  r5, r3, #1\n"
+        /* the product is normal: bring the leading one of r1 to bit 23, and r3 to the exponent for that */
+        "13: lsls  r5, r3, #8\n" /* its bits, from bit 31 down */
         "    lsrs  r3, r1, #31\n"
         "    lsls  r3, r3, #8\n"
-        "    adds  r3, #1\n"
-        "    lsrs  r1, r5, #8\n"
+        "    adr   r6, .Lplaces\n"
+        "    lsrs  r1, r5, #16\n"
+        "    beq   15f\n"
+        "    lsrs  r1, r1, #8\n"
         "    bne   14f\n"
-        "    lsls  r5, r5, #16\n"
-        "    subs  r3, #16\n"
-        "14: lsrs  r1, r5, #16\n"
-        "    bne   15f\n"
         "    lsls  r5, r5, #8\n"
         "    subs  r3, #8\n"
-        "15: lsrs  r1, r5, #20\n"
-        "    bne   16f\n"
-        "    lsls  r5, r5, #4\n"
-        "    subs  r3, #4\n"
-        "16: lsrs  r1, r5, #22\n"
-        "    bne   17f\n"
-        "    lsls  r5, r5, #2\n"
-        "    subs  r3, #2\n"
-        "17: lsrs  r1, r5, #23\n"
-        "    bne   18f\n"
-        "    lsls  r5, r5, #1\n"
-        "    subs  r3, #1\n"
-        "18: movs  r1, r5\n"
+        "    lsrs  r1, r5, #24\n"
+        "14: ldrb  r1, [r6, r1]\n"
+        "    adds  r3, #1\n"
+        "    subs  r3, r1\n"
+        "    lsls  r5, r1\n"
+        "    lsrs  r1, r5, #9\n" /* the leading one is gone: it is implied */
         "    b     1b\n"
+        "15: lsls  r5, r5, #16\n"
+        "    subs  r3, #16\n"
+        "    lsrs  r1, r5, #24\n"
+        "    b     14b\n"
         /* infinite or NaN */
         "20: lsls  r2, r1, #9\n"
         "    bne   24f\n"
@@ -225,13 +236,12 @@ __asm__(".syntax unified\n"
         "    b     2b\n"
         "39: movs  r0, r2\n"
         "    b     25b\n"
-        ".size __aeabi_fmul, . - __aeabi_fmul\n");
+        ".size __aeabi_fmul, . - __aeabi_fmul\n"
 
-/*
- * r0 becomes the operand of larger magnitude, r1 the other; r4 its significand moved in line, r5 what fell off below,
- * a fraction of an ulp with the half at bit 31. Further apart than 25 places the smaller one cannot count.
- */
-__asm__(".section .text.__aeabi_fadd, \"ax\", %progbits\n"
+        /*
+         * r0 becomes the operand of larger magnitude, r1 the other; r4 its significand moved in line, r5 what fell off below,
+         * a fraction of an ulp with the half at bit 31. Further apart than 25 places the smaller one cannot count.
+         */
         ".global __aeabi_fsub\n"
         ".type __aeabi_fsub, %function\n"
         ".p2align 2\n"
@@ -239,8 +249,7 @@ __asm__(".section .text.__aeabi_fadd, \"ax\", %progbits\n"
         "__aeabi_fsub:\n"
         "    movs  r2, #1\n"
         "    lsls  r2, r2, #31\n"
-        "    eors  r1, r2\n"
-        "    b     __aeabi_fadd\n"
+        "    eors  r1, r2\n" /* and on into the sum */
         ".size __aeabi_fsub, . - __aeabi_fsub\n"
         ".global __aeabi_fadd\n"
         ".type __aeabi_fadd, %function\n"
@@ -251,12 +260,11 @@ __asm__(".section .text.__aeabi_fadd, \"ax\", %progbits\n"
         "    lsls  r3, r1, #1\n"
         "    cmp   r2, r3\n"
         "    bhs   1f\n"
-        "    movs  r4, r2\n"
-        "    movs  r2, r3\n"
-        "    movs  r3, r4\n"
         "    movs  r4, r0\n"
         "    movs  r0, r1\n"
         "    movs  r1, r4\n"
+        "    lsls  r2, r0, #1\n"
+        "    lsls  r3, r1, #1\n"
         "1:  lsrs  r2, r2, #24\n" /* exponent */
         "    cmp   r2, #255\n"
         "    beq   22f\n"
@@ -295,75 +303,31 @@ __asm__(".section .text.__aeabi_fadd, \"ax\", %progbits\n"
         /* the sum has 25 bits: halve it under its sign and exponent */
         "6:  subs  r0, r3\n"
         "    cmp   r2, #254\n"
-        "    beq   7f\n"
+        "    beq   9f\n"
         "    movs  r1, #1\n"
         "    lsls  r1, r1, #22\n"
         "    adds  r0, r1\n"
-        "    lsrs  r3, r3, #1\n" /* carry = the half */
-        "    mov   r12, r3\n"
-        "    add   r0, r12\n"
-        "    bcc   5b\n"
         "    cmp   r5, #0\n"
-        "    bne   4b\n"
-        "    lsrs  r3, r0, #1\n"
-        "    bcs   4b\n"
+        "    beq   7f\n"
+        "    lsrs  r3, r3, #1\n" /* carry = the half */
+        "    adcs  r0, r3\n"
+        "    pop   {r4, r5}\n"
+        "    bx    lr\n"
+        "7:  lsrs  r3, r3, #1\n"
+        "    bcc   8f\n"
+        "    adcs  r0, r3\n" /* tie: to even, from one above where that is odd */
+        "    lsrs  r0, r0, #1\n"
+        "    lsls  r0, r0, #1\n"
+        "    pop   {r4, r5}\n"
+        "    bx    lr\n"
+        "8:  adds  r0, r3\n"
         "    pop   {r4, r5}\n"
         "    bx    lr\n"
         /* infinite */
-        "7:  lsrs  r0, r0, #31\n"
+        "9:  lsrs  r0, r0, #31\n"
         "    lsls  r0, r0, #8\n"
         "    adds  r0, #255\n"
         "    lsls  r0, r0, #23\n"
-        "    b     5b\n"
-        /* opposite sign */
-        "10: rsbs  r5, r5, #0\n"
-        "    sbcs  r3, r4\n"
-        "    bcc   11f\n"
-        "    lsrs  r0, r0, #23\n"
-        "    lsls  r0, r0, #23\n"
-        "    adds  r0, r3\n"
-        "    b     3b\n"
-        /* cancellation: up by one place; if that is not enough the rest is empty and the result exact */
-        "11: movs  r1, #1\n"
-        "    lsls  r1, r1, #23\n"
-        "    adds  r3, r1\n"
-        "    subs  r2, #2\n" /* exponent less one, after the first place */
-        "    adds  r5, r5\n"
-        "    adcs  r3, r3\n"
-        "    beq   17f\n"
-        "    lsrs  r4, r3, #8\n"
-        "    bne   12f\n"
-        "    lsls  r3, r3, #16\n"
-        "    subs  r2, #16\n"
-        "12: lsrs  r4, r3, #16\n"
-        "    bne   13f\n"
-        "    lsls  r3, r3, #8\n"
-        "    subs  r2, #8\n"
-        "13: lsrs  r4, r3, #20\n"
-        "    bne   14f\n"
-        "    lsls  r3, r3, #4\n"
-        "    subs  r2, #4\n"
-        "14: lsrs  r4, r3, #22\n"
-        "    bne   15f\n"
-        "    lsls  r3, r3, #2\n"
-        "    subs  r2, #2\n"
-        "15: lsrs  r4, r3, #23\n"
-        "    bne   16f\n"
-        "    lsls  r3, r3, #1\n"
-        "    subs  r2, #1\n"
-        "16: lsrs  r0, r0, #31\n"
-        "    lsls  r0, r0, #31\n"
-        "    cmp   r2, #0\n"
-        "    blt   18f\n"
-        "    adds  r0, r3\n"
-        "    lsls  r2, r2, #23\n"
-        "    adds  r0, r2\n"
-        "    b     3b\n"
-        "17: movs  r0, #0\n"
-        "    b     5b\n"
-        "18: rsbs  r2, r2, #0\n" /* subnormal, exact */
-        "    lsrs  r3, r2\n"
-        "    adds  r0, r3\n"
         "    b     5b\n"
         /* the smaller one is zero, or subnormal: then its exponent is 1 and it has no hidden one */
         "20: lsls  r4, r1, #1\n"
@@ -404,6 +368,67 @@ __asm__(".section .text.__aeabi_fadd, \"ax\", %progbits\n"
         "    bne   5b\n"
         "    movs  r0, #0\n"
         "    b     5b\n"
-        ".size __aeabi_fadd, . - __aeabi_fadd\n");
+        /* opposite sign */
+        "10: rsbs  r5, r5, #0\n"
+        "    sbcs  r3, r4\n"
+        "    bcc   11f\n"
+        "    lsrs  r0, r0, #23\n"
+        "    lsls  r0, r0, #23\n"
+        "    adds  r0, r3\n"
+        "    b     3b\n"
+        /* cancellation: up by one place, to bit 31 down; if that is not enough the rest is empty and the result exact */
+        "11: adds  r5, r5\n"
+        "    adcs  r3, r3\n"
+        "    lsls  r3, r3, #8\n"
+        "    bmi   12f\n"
+        "    beq   17f\n"
+        "    adr   r1, .Lplaces\n"
+        "    lsrs  r4, r3, #16\n"
+        "    beq   14f\n"
+        "    lsrs  r4, r4, #8\n"
+        "    beq   13f\n"
+        "    ldrb  r4, [r1, r4]\n"
+        EXACT
+        "13: lsrs  r4, r3, #16\n"
+        "    ldrb  r4, [r1, r4]\n"
+        "    adds  r4, #8\n"
+        EXACT
+        "14: lsrs  r4, r3, #8\n"
+        "    ldrb  r4, [r1, r4]\n"
+        "    adds  r4, #16\n"
+        EXACT
+        "12: cmp   r2, #1\n"
+        "    beq   18f\n"
+        "    lsls  r3, r3, #1\n"
+        "    lsrs  r3, r3, #9\n"
+        "    lsrs  r0, r0, #23\n"
+        "    subs  r0, #1\n"
+        "    lsls  r0, r0, #23\n"
+        "    adds  r0, r3\n"
+        "    b     3b\n"
+        "17: movs  r0, #0\n"
+        "    pop   {r4, r5}\n"
+        "    bx    lr\n"
+        "18: subs  r2, #1\n" /* subnormal, exact */
+        "    lsls  r3, r2\n"
+        "    lsrs  r3, r3, #9\n"
+        "    lsrs  r0, r0, #31\n"
+        "    lsls  r0, r0, #31\n"
+        "    adds  r0, r3\n"
+        "    pop   {r4, r5}\n"
+        "    bx    lr\n"
+        ".size __aeabi_fadd, . - __aeabi_fadd\n"
+        /* by a byte: the places that bring its leading one past bit 7 */
+        ".p2align 2\n"
+        ".Lplaces:\n"
+        ".byte 9\n"
+        ".byte 8\n"
+        ".fill 2, 1, 7\n"
+        ".fill 4, 1, 6\n"
+        ".fill 8, 1, 5\n"
+        ".fill 16, 1, 4\n"
+        ".fill 32, 1, 3\n"
+        ".fill 64, 1, 2\n"
+        ".fill 128, 1, 1\n");
 
 #endif
