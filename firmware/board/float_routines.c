@@ -13,13 +13,57 @@ uint32_t __aeabi_fadd(uint32_t a, uint32_t b);
 uint32_t __aeabi_fsub(uint32_t a, uint32_t b);
 uint32_t __aeabi_fmul(uint32_t a, uint32_t b);
 
+/* Significand of a, a normal number, in two: upper 8 bits with the hidden one to r0, lower 16 to r4. */
+#define HALVES_OF_A \
+    "    uxth  r4, r0\n" \
+    "    lsls  r0, r0, #9\n" \
+    "    lsrs  r0, r0, #25\n" \
+    "    adds  r0, #128\n"
+
+/* Of b to r1 and r5. */
+#define HALVES_OF_B \
+    "    uxth  r5, r1\n" \
+    "    lsls  r1, r1, #9\n" \
+    "    lsrs  r1, r1, #25\n" \
+    "    adds  r1, #128\n"
+
+/* X, the product >> 16, to r0; r6 is low x low, whose lower half is below X. */
+#define PRODUCT \
+    "    movs  r6, r4\n" \
+    "    muls  r6, r5, r6\n" \
+    "    muls  r4, r1, r4\n" \
+    "    muls  r5, r0, r5\n" \
+    "    muls  r0, r1, r0\n" \
+    "    adds  r4, r5\n" \
+    "    lsls  r0, r0, #16\n" \
+    "    adds  r0, r4\n" \
+    "    lsrs  r1, r6, #16\n" \
+    "    adds  r0, r1\n"
+
+/* The smaller significand from its fraction in the upper bits of r4. */
+#define HIDDEN_ONE \
+    "    lsrs  r4, r4, #9\n" \
+    "    movs  r5, #1\n" \
+    "    lsls  r5, r5, #23\n" \
+    "    orrs  r4, r5\n"
+
+/* It moves in line with the larger one, whose fraction r3 becomes; r5 what fell off, a fraction of an ulp with the half at bit 31. */
+#define ALIGNED \
+    "    movs  r5, r4\n" \
+    "    lsrs  r4, r3\n" \
+    "    subs  r3, #32\n" \
+    "    rsbs  r3, r3, #0\n" \
+    "    lsls  r5, r3\n" \
+    "    lsls  r3, r0, #9\n" \
+    "    lsrs  r3, r3, #9\n"
+
 /*
  * The end of a sum that cancelled, with nothing to round: r4 places bring the leading one past bit 31, where it is implied,
  * and lower the exponent as much. Written out three times: a jump here would be on the dearest path.
  */
 #define EXACT \
     "    cmp   r2, r4\n" \
-    "    bls   18f\n" \
+    "    bls   19f\n" \
     "    lsls  r3, r4\n" \
     "    lsrs  r3, r3, #9\n" \
     "    lsrs  r0, r0, #23\n" \
@@ -56,26 +100,12 @@ __asm__(".syntax unified\n"
         "    subs  r4, #126\n" /* E */
         "    cmp   r4, #252\n"
         "    bhi   30f\n"
-        "1:  adds  r2, r3\n"
+        "    adds  r2, r3\n"
         "    subs  r2, #127\n"
-        "    uxth  r4, r0\n"
-        "    lsls  r0, r0, #9\n"
-        "    lsrs  r0, r0, #25\n"
-        "    adds  r0, #128\n" /* upper 8 bits of a with the hidden one */
-        "    uxth  r5, r1\n"
-        "    lsls  r1, r1, #9\n"
-        "    lsrs  r1, r1, #25\n"
-        "    adds  r1, #128\n"
-        "    movs  r6, r4\n"
-        "    muls  r6, r5, r6\n" /* low x low */
-        "    muls  r4, r1, r4\n"
-        "    muls  r5, r0, r5\n"
-        "    muls  r0, r1, r0\n" /* high x high */
-        "    adds  r4, r5\n"
-        "    lsls  r0, r0, #16\n"
-        "    adds  r0, r4\n"
-        "    lsrs  r1, r6, #16\n"
-        "    adds  r0, r1\n" /* X */
+        "1:\n"
+        HALVES_OF_A
+        HALVES_OF_B
+        PRODUCT
         "    bmi   3f\n"
         "2:  lsls  r0, r0, #1\n"
         "    subs  r2, #1\n"
@@ -96,46 +126,41 @@ __asm__(".syntax unified\n"
         "10: movs  r4, r0\n"
         "    movs  r0, r1\n"
         "    movs  r1, r4\n"
-        "11: lsls  r3, r1, #1\n"
-        "    beq   22f\n"
-        "    lsrs  r4, r3, #24\n"
-        "    bne   20f\n"
-        /* subnormal; E with the least exponent, its own */
         "    lsrs  r2, r0, #23\n"
         "    uxtb  r4, r2\n"
-        "    subs  r4, #127\n"
+        "    subs  r4, #1\n"
+        "11: lsls  r3, r1, #1\n"
+        "    beq   22f\n"
+        "    lsrs  r5, r3, #24\n"
+        "    bne   20f\n"
+        /* subnormal; E with the least exponent, its own */
+        "    subs  r4, #126\n"
         "    blt   34f\n"
         "    cmp   r4, #22\n"
-        "    bhi   12f\n"
-        "    movs  r5, #24\n"
-        "    subs  r5, r4\n"
-        "    movs  r6, r3\n"
-        "    lsrs  r6, r5\n"
-        "    beq   33f\n"
-        "    b     13f\n"
-        "12: cmp   r4, #128\n"
+        "    bls   32f\n"
+        "    cmp   r4, #128\n"
         "    beq   21f\n"
-        /* the product is normal: bring the leading one of r1 to bit 23, and r3 to the exponent for that */
-        "13: lsls  r5, r3, #8\n" /* its bits, from bit 31 down */
-        "    lsrs  r3, r1, #31\n"
-        "    lsls  r3, r3, #8\n"
+        /* the product is normal: the leading one of b comes to bit 23 of r1, and its exponent to r2 */
+        "13: lsrs  r5, r1, #31\n"
+        "    lsls  r5, r5, #8\n"
         "    adr   r6, .Lplaces\n"
-        "    lsrs  r1, r5, #16\n"
+        "    lsrs  r1, r3, #8\n"
         "    beq   15f\n"
         "    lsrs  r1, r1, #8\n"
         "    bne   14f\n"
-        "    lsls  r5, r5, #8\n"
-        "    subs  r3, #8\n"
-        "    lsrs  r1, r5, #24\n"
+        "    lsls  r3, r3, #8\n"
+        "    subs  r5, #8\n"
+        "    lsrs  r1, r3, #16\n"
         "14: ldrb  r1, [r6, r1]\n"
-        "    adds  r3, #1\n"
-        "    subs  r3, r1\n"
-        "    lsls  r5, r1\n"
-        "    lsrs  r1, r5, #9\n" /* the leading one is gone: it is implied */
+        "    subs  r5, r1\n"
+        "    adds  r2, r5\n"
+        "    subs  r2, #126\n"
+        "    lsls  r3, r1\n"
+        "    lsrs  r1, r3, #1\n"
         "    b     1b\n"
-        "15: lsls  r5, r5, #16\n"
-        "    subs  r3, #16\n"
-        "    lsrs  r1, r5, #24\n"
+        "15: lsls  r3, r3, #16\n"
+        "    subs  r5, #16\n"
+        "    lsrs  r1, r3, #16\n"
         "    b     14b\n"
         /* infinite or NaN */
         "20: lsls  r2, r1, #9\n"
@@ -171,64 +196,65 @@ __asm__(".syntax unified\n"
         "    lsls  r0, r0, #23\n"
         "    pop   {r4, r5, r6}\n"
         "    bx    lr\n"
-        /* E out of range: r2 the sign, r1 the significand of b */
-        "30: cmp   r4, #253\n"
-        "    bgt   25b\n"
-        "    movs  r2, r0\n"
-        "    eors  r2, r1\n"
-        "    lsls  r1, r1, #9\n"
-        "    movs  r5, #1\n"
-        "    lsrs  r1, r1, #9\n"
-        "    lsls  r5, r5, #23\n"
-        "    orrs  r1, r5\n"
-        "    b     35f\n"
-        /* the product is subnormal, or of the least exponent: a factor of b goes to r1, E = 0 */
-        "33: lsls  r3, r4\n"
+        /* the factor of b that the exponent of a brings to E = 0; none where the product is larger */
+        "32: movs  r5, #24\n"
+        "    subs  r5, r4\n"
+        "    movs  r6, r3\n"
+        "    lsrs  r6, r5\n"
+        "    bne   13b\n"
+        "    lsls  r3, r4\n"
         "    movs  r4, #0\n"
+        /* the product is subnormal, or of the least exponent; r3 has the significand of b, doubled */
         "34: movs  r2, r0\n"
         "    eors  r2, r1\n"
         "    lsrs  r1, r3, #1\n"
-        "35: lsrs  r2, r2, #31\n"
+        "    lsrs  r2, r2, #31\n"
         "    lsls  r2, r2, #31\n"
         "    movs  r3, #7\n"
         "    subs  r3, r4\n"
-        "    uxth  r4, r0\n"
-        "    lsls  r0, r0, #9\n"
-        "    lsrs  r0, r0, #25\n"
-        "    adds  r0, #128\n"
+        HALVES_OF_A
         "    uxth  r5, r1\n"
         "    lsrs  r1, r1, #16\n"
-        "    movs  r6, r4\n"
-        "    muls  r6, r5, r6\n"
-        "    muls  r4, r1, r4\n"
-        "    muls  r5, r0, r5\n"
-        "    muls  r0, r1, r0\n"
-        "    adds  r4, r5\n"
-        "    lsls  r0, r0, #16\n"
-        "    adds  r0, r4\n"
-        "    lsrs  r1, r6, #16\n"
-        "    adds  r0, r1\n" /* X */
-        "    cmp   r3, #0\n"
-        "    blt   38f\n"
+        "    b     35f\n"
+        /* E out of range */
+        "30: cmp   r4, #253\n"
+        "    bge   38f\n"
+        "    movs  r2, r0\n"
+        "    eors  r2, r1\n"
+        "    lsrs  r2, r2, #31\n"
+        "    lsls  r2, r2, #31\n"
+        "    movs  r3, #7\n"
+        "    subs  r3, r4\n"
+        HALVES_OF_A
+        HALVES_OF_B
+        "35:\n"
+        PRODUCT
         "    movs  r1, r0\n"
-        "    lsrs  r1, r3\n"
+        "    lsrs  r0, r3\n"
         "    movs  r4, #32\n"
         "    subs  r4, r3\n" /* below 0 nothing is left of X, nor of what falls off below */
-        "    lsls  r0, r4\n"
-        "    adds  r2, r1\n"
-        "    lsls  r0, r0, #1\n" /* carry = the half */
+        "    lsls  r1, r4\n"
+        "    adds  r0, r2\n"
+        "    lsls  r1, r1, #1\n" /* carry = the half */
         "    bcc   37f\n"
         "    lsls  r6, r6, #16\n"
-        "    orrs  r0, r6\n"
+        "    orrs  r1, r6\n"
         "    bne   36f\n"
-        "    lsrs  r1, r2, #1\n" /* tie: to even */
+        "    lsrs  r1, r0, #1\n" /* tie: to even */
         "    bcc   37f\n"
-        "36: adds  r2, #1\n"
-        "37: movs  r0, r2\n"
-        "    pop   {r4, r5, r6}\n"
+        "36: adds  r0, #1\n"
+        "37: pop   {r4, r5, r6}\n"
         "    bx    lr\n"
+        "38: bgt   25b\n"
         /* E = 253: the largest exponent there is, or infinite */
-        "38: movs  r1, #0\n"
+        "    movs  r2, r0\n"
+        "    eors  r2, r1\n"
+        "    lsrs  r2, r2, #31\n"
+        "    lsls  r2, r2, #31\n"
+        HALVES_OF_A
+        HALVES_OF_B
+        PRODUCT
+        "    movs  r1, #0\n"
         "    cmp   r0, #0\n"
         "    bmi   39f\n"
         "    lsrs  r2, r2, #23\n"
@@ -239,8 +265,8 @@ __asm__(".syntax unified\n"
         ".size __aeabi_fmul, . - __aeabi_fmul\n"
 
         /*
-         * r0 becomes the operand of larger magnitude, r1 the other; r4 its significand moved in line, r5 what fell off below,
-         * a fraction of an ulp with the half at bit 31. Further apart than 25 places the smaller one cannot count.
+         * r0 becomes the operand of larger magnitude, r1 the other, then whether signs differ; r2 the exponent, r3 the distance
+         * to the other one. Further apart than 25 places the smaller one cannot count.
          */
         ".global __aeabi_fsub\n"
         ".type __aeabi_fsub, %function\n"
@@ -265,29 +291,21 @@ __asm__(".syntax unified\n"
         "    movs  r1, r4\n"
         "    lsls  r2, r0, #1\n"
         "    lsls  r3, r1, #1\n"
-        "1:  lsrs  r2, r2, #24\n" /* exponent */
+        "1:  lsrs  r2, r2, #24\n"
         "    cmp   r2, #255\n"
         "    beq   22f\n"
         "    lsrs  r3, r3, #24\n"
         "    beq   20f\n"
-        "    subs  r3, r2, r3\n" /* distance */
-        "    cmp   r3, #25\n"
-        "    bhi   5f\n"
+        "    subs  r3, r2, r3\n"
         "    lsls  r4, r1, #9\n"
-        "    lsrs  r4, r4, #9\n"
-        "    movs  r5, #1\n"
-        "    lsls  r5, r5, #23\n"
-        "    orrs  r4, r5\n"
-        "2:  movs  r5, r4\n"
-        "    lsrs  r4, r3\n"
-        "    subs  r3, #32\n"
-        "    rsbs  r3, r3, #0\n"
-        "    lsls  r5, r3\n"
-        "    lsls  r3, r0, #9\n"
-        "    lsrs  r3, r3, #9\n" /* fraction of the larger */
         "    eors  r1, r0\n"
         "    bmi   10f\n"
         /* same sign */
+        "    cmp   r3, #25\n"
+        "    bhi   5f\n"
+        HIDDEN_ONE
+        "2:\n"
+        ALIGNED
         "    adds  r0, r4\n"
         "    adds  r3, r4\n"
         "    lsrs  r1, r3, #23\n"
@@ -334,28 +352,23 @@ __asm__(".syntax unified\n"
         "    beq   21f\n"
         "    subs  r3, r2, #1\n"
         "    blt   24f\n"
+        "    beq   23f\n"
         "    lsrs  r4, r4, #1\n"
         "    cmp   r3, #25\n"
-        "    bls   2b\n"
-        "    b     5b\n"
+        "    bhi   5b\n"
+        "    eors  r1, r0\n"
+        "    bpl   2b\n"
+        "    b     11f\n"
+        /* two of exponent 1: a difference is that of their bits */
+        "23: lsrs  r4, r4, #1\n"
+        "    eors  r1, r0\n"
+        "    bmi   25f\n"
+        "    b     2b\n"
         "21: cmp   r2, #0\n"
         "    bne   5b\n"
         "    lsls  r2, r0, #1\n"
         "    bne   5b\n"
         "    ands  r0, r1\n" /* both are zero */
-        "    b     5b\n"
-        /* the larger one is infinite or NaN */
-        "22: lsls  r2, r0, #9\n"
-        "    bne   23f\n"
-        "    lsrs  r3, r3, #24\n"
-        "    cmp   r3, #255\n"
-        "    bne   5b\n"
-        "    eors  r1, r0\n"
-        "    bpl   5b\n"
-        "23: movs  r0, #255\n"
-        "    lsls  r0, r0, #1\n"
-        "    adds  r0, #1\n"
-        "    lsls  r0, r0, #22\n"
         "    b     5b\n"
         /* both are subnormal: their bits count */
         "24: lsrs  r4, r4, #1\n"
@@ -368,48 +381,78 @@ __asm__(".syntax unified\n"
         "    bne   5b\n"
         "    movs  r0, #0\n"
         "    b     5b\n"
-        /* opposite sign */
-        "10: rsbs  r5, r5, #0\n"
+        /* the larger one is infinite or NaN */
+        "22: lsls  r2, r0, #9\n"
+        "    bne   26f\n"
+        "    lsrs  r3, r3, #24\n"
+        "    cmp   r3, #255\n"
+        "    bne   5b\n"
+        "    eors  r1, r0\n"
+        "    bpl   5b\n"
+        "26: movs  r0, #255\n"
+        "    lsls  r0, r0, #1\n"
+        "    adds  r0, #1\n"
+        "    lsls  r0, r0, #22\n"
+        "    b     5b\n"
+        /* opposite sign, at least two places apart: at most one place is lost */
+        "10: cmp   r3, #1\n"
+        "    bls   12f\n"
+        "    cmp   r3, #25\n"
+        "    bhi   5b\n"
+        HIDDEN_ONE
+        "11:\n"
+        ALIGNED
+        "    rsbs  r5, r5, #0\n"
         "    sbcs  r3, r4\n"
-        "    bcc   11f\n"
-        "    lsrs  r0, r0, #23\n"
-        "    lsls  r0, r0, #23\n"
-        "    adds  r0, r3\n"
-        "    b     3b\n"
-        /* cancellation: up by one place, to bit 31 down; if that is not enough the rest is empty and the result exact */
-        "11: adds  r5, r5\n"
+        "    bcs   1f\n"
+        "    adds  r5, r5\n"
         "    adcs  r3, r3\n"
-        "    lsls  r3, r3, #8\n"
-        "    bmi   12f\n"
-        "    beq   17f\n"
-        "    adr   r1, .Lplaces\n"
+        "1:  lsrs  r0, r0, #23\n"
+        "    lsls  r0, r0, #23\n"
+        "    adds  r0, r3\n" /* below 0 it takes one from the exponent */
+        "    b     3b\n"
+        /* one place apart or none: r3 becomes the difference with the bit below the hidden one at bit 31, and is exact */
+        "12: bne   16f\n"
+        "    lsls  r3, r0, #9\n"
+        "    lsrs  r4, r4, #1\n"
+        "    subs  r3, r3, r4\n" /* less a half, which is the difference of the hidden ones */
+        "    bcs   17f\n"
+        "    lsls  r3, r3, #1\n"
+        "    lsrs  r3, r3, #1\n"
+        "13: adr   r1, .Lplaces\n"
         "    lsrs  r4, r3, #16\n"
-        "    beq   14f\n"
+        "    beq   15f\n"
         "    lsrs  r4, r4, #8\n"
-        "    beq   13f\n"
-        "    ldrb  r4, [r1, r4]\n"
-        EXACT
-        "13: lsrs  r4, r3, #16\n"
+        "    bne   14f\n"
+        "    lsrs  r4, r3, #16\n"
         "    ldrb  r4, [r1, r4]\n"
         "    adds  r4, #8\n"
         EXACT
-        "14: lsrs  r4, r3, #8\n"
+        "14: ldrb  r4, [r1, r4]\n"
+        EXACT
+        "15: lsrs  r4, r3, #8\n"
         "    ldrb  r4, [r1, r4]\n"
         "    adds  r4, #16\n"
         EXACT
-        "12: cmp   r2, #1\n"
-        "    beq   18f\n"
-        "    lsls  r3, r3, #1\n"
-        "    lsrs  r3, r3, #9\n"
-        "    lsrs  r0, r0, #23\n"
-        "    subs  r0, #1\n"
-        "    lsls  r0, r0, #23\n"
-        "    adds  r0, r3\n"
-        "    b     3b\n"
-        "17: movs  r0, #0\n"
+        "16: lsls  r3, r0, #9\n"
+        "    subs  r3, r3, r4\n"
+        "    bne   13b\n"
+        "    movs  r0, #0\n"
         "    pop   {r4, r5}\n"
         "    bx    lr\n"
-        "18: subs  r2, #1\n" /* subnormal, exact */
+        "17: lsrs  r0, r0, #23\n"
+        "    lsls  r1, r3, #1\n"
+        "    bcs   18f\n"
+        "    subs  r0, #1\n" /* one place lost */
+        "    lsls  r0, r0, #23\n"
+        "    lsrs  r3, r3, #8\n"
+        "    adds  r0, r3\n"
+        "    pop   {r4, r5}\n"
+        "    bx    lr\n"
+        "18: lsls  r0, r0, #23\n"
+        "    lsrs  r3, r1, #9\n"
+        "    b     7b\n"
+        "19: subs  r2, #1\n" /* subnormal */
         "    lsls  r3, r2\n"
         "    lsrs  r3, r3, #9\n"
         "    lsrs  r0, r0, #31\n"
