@@ -162,6 +162,17 @@ __asm__(".syntax unified\n"
         "    subs  r5, #16\n"
         "    lsrs  r1, r3, #16\n"
         "    b     14b\n"
+        /* E out of range */
+        "30: cmp   r4, #253\n"
+        "    bge   38f\n"
+        "    eors  r2, r3\n"
+        "    lsrs  r2, r2, #8\n"
+        "    lsls  r2, r2, #31\n"
+        "    movs  r3, #7\n"
+        "    subs  r3, r4\n"
+        HALVES_OF_A
+        HALVES_OF_B
+        "    b     35f\n"
         /* infinite or NaN */
         "20: lsls  r2, r1, #9\n"
         "    bne   24f\n"
@@ -204,29 +215,19 @@ __asm__(".syntax unified\n"
         "    bne   13b\n"
         "    lsls  r3, r4\n"
         "    movs  r4, #0\n"
-        /* the product is subnormal, or of the least exponent; r3 has the significand of b, doubled */
-        "34: movs  r2, r0\n"
-        "    eors  r2, r1\n"
-        "    lsrs  r1, r3, #1\n"
-        "    lsrs  r2, r2, #31\n"
+        "    lsrs  r5, r3, #1\n"
+        "    lsrs  r1, r1, #31\n"
+        "    lsls  r1, r1, #31\n"
+        "    orrs  r1, r5\n"
+        /* the product is subnormal, or of the least exponent; r3 is b without its sign, doubled */
+        "34: uxth  r5, r1\n"
+        "    eors  r1, r0\n"
+        "    lsrs  r2, r1, #31\n"
         "    lsls  r2, r2, #31\n"
+        "    lsrs  r1, r3, #17\n"
         "    movs  r3, #7\n"
         "    subs  r3, r4\n"
         HALVES_OF_A
-        "    uxth  r5, r1\n"
-        "    lsrs  r1, r1, #16\n"
-        "    b     35f\n"
-        /* E out of range */
-        "30: cmp   r4, #253\n"
-        "    bge   38f\n"
-        "    movs  r2, r0\n"
-        "    eors  r2, r1\n"
-        "    lsrs  r2, r2, #31\n"
-        "    lsls  r2, r2, #31\n"
-        "    movs  r3, #7\n"
-        "    subs  r3, r4\n"
-        HALVES_OF_A
-        HALVES_OF_B
         "35:\n"
         PRODUCT
         "    movs  r1, r0\n"
