@@ -267,7 +267,7 @@ __asm__(".syntax unified\n"
 
         /*
          * r0 becomes the operand of larger magnitude, r1 the other, then whether signs differ; r2 the exponent, r3 the distance
-         * to the other one. Further apart than 25 places the smaller one cannot count.
+         * to the other one. Nothing is left of the smaller one from 24 places on, nor of what fell off from 33 on.
          */
         ".global __aeabi_fsub\n"
         ".type __aeabi_fsub, %function\n"
@@ -302,8 +302,6 @@ __asm__(".syntax unified\n"
         "    eors  r1, r0\n"
         "    bmi   10f\n"
         /* same sign */
-        "    cmp   r3, #25\n"
-        "    bhi   5f\n"
         HIDDEN_ONE
         "2:\n"
         ALIGNED
@@ -353,18 +351,13 @@ __asm__(".syntax unified\n"
         "    beq   21f\n"
         "    subs  r3, r2, #1\n"
         "    blt   24f\n"
-        "    beq   23f\n"
         "    lsrs  r4, r4, #1\n"
-        "    cmp   r3, #25\n"
-        "    bhi   5b\n"
         "    eors  r1, r0\n"
         "    bpl   2b\n"
-        "    b     11f\n"
-        /* two of exponent 1: a difference is that of their bits */
-        "23: lsrs  r4, r4, #1\n"
-        "    eors  r1, r0\n"
-        "    bmi   25f\n"
-        "    b     2b\n"
+        "    cmp   r3, #0\n"
+        "    bne   11f\n"
+        "    subs  r0, r4\n" /* of two with exponent 1 the bits count */
+        "    b     5b\n"
         "21: cmp   r2, #0\n"
         "    bne   5b\n"
         "    lsls  r2, r0, #1\n"
@@ -398,8 +391,6 @@ __asm__(".syntax unified\n"
         /* opposite sign, at least two places apart: at most one place is lost */
         "10: cmp   r3, #1\n"
         "    bls   12f\n"
-        "    cmp   r3, #25\n"
-        "    bhi   5b\n"
         HIDDEN_ONE
         "11:\n"
         ALIGNED
