@@ -15,7 +15,7 @@ from verification.static_bound.elf_image import ElfFunction, ElfImage, load_elf
 from verification.static_bound.exploration import Exploration, NewTargets, Prepared, Summary
 from verification.static_bound.liveness import ARGUMENTS, Locations, live_before
 from verification.static_bound.loop_nest import LoopNest, loop_nest
-from verification.static_bound.routines import LoopBound, cases
+from verification.static_bound.routines import FLOAT_RESULTS, LoopBound, cases, finite_parts
 from verification.static_bound.words import TOP, Word, join
 
 EXCEPTION_FRAME_BYTES = 32  # eight words, DDI0419 B1.5.6
@@ -61,7 +61,7 @@ def static_bound(elf: bytes, function: str, loop_bounds: Sequence[LoopBound] = (
     without a bound, a call or jump through an unknown pointer, a stack frame of variable size, or an instruction that waits.
     """
     analysis = Analysis(load_elf(elf), tuple(loop_bounds))
-    summary = analysis.call(analysis.image.function_named(function), dict.fromkeys(ARGUMENTS, TOP))
+    summary = _joined(analysis.call(analysis.image.function_named(function), dict.fromkeys(ARGUMENTS, TOP)))
     shares = _path_shares(summary)
     return StaticBound(
         function, summary.cycles.zero_wait, summary.cycles.two_wait, summary.stack_bytes, shares, analysis.loops(shares)
@@ -81,18 +81,18 @@ class Analysis:
     image: ElfImage
     loop_bounds: tuple[LoopBound, ...]
     prepared: dict[int, Prepared] = field(default_factory=dict)
-    summaries: dict[tuple[int, tuple[tuple[int, Word], ...]], Summary] = field(default_factory=dict)
+    summaries: dict[tuple[int, tuple[tuple[int, Word], ...]], tuple[Summary, ...]] = field(default_factory=dict)
     jumps: dict[int, set[int]] = field(default_factory=dict)
     passes: dict[tuple[str, int], int] = field(default_factory=dict)
     active: list[ElfFunction] = field(default_factory=list)
 
-    def call(self, function: ElfFunction, arguments: Mapping[int, Word]) -> Summary:
-        """Cost of a call with what is known of r0..r3."""
+    def call(self, function: ElfFunction, arguments: Mapping[int, Word]) -> tuple[Summary, ...]:
+        """Cost of a call with what is known of r0..r3, by the part of the result where that is a finite float."""
         self._prepare(function)
         known = {register: arguments[register] for register in sorted(self._reads(function))}
-        return _joined([self._case(function, case) for case in cases(function.name, known)])
+        return _by_part([summary for case in cases(function.name, known) for summary in self._case(function, case)])
 
-    def _case(self, function: ElfFunction, arguments: Mapping[int, Word]) -> Summary:
+    def _case(self, function: ElfFunction, arguments: Mapping[int, Word]) -> tuple[Summary, ...]:
         key = (function.start, tuple(arguments.items()))
         if key not in self.summaries:
             self.summaries[key] = self._explored(function, arguments)
@@ -109,21 +109,21 @@ class Analysis:
         found = sorted((name, head, passes) for (name, head), passes in self.passes.items() if name in names)
         return tuple(LoopPasses(name, head, passes, stated.get((name, head), "")) for name, head, passes in found)
 
-    def _explored(self, function: ElfFunction, arguments: Mapping[int, Word]) -> Summary:
+    def _explored(self, function: ElfFunction, arguments: Mapping[int, Word]) -> tuple[Summary, ...]:
         with self._entered(function):
             try:
-                summary = Exploration(self.image, self._prepare(function), self.call).run(arguments)
+                found = Exploration(self.image, self._prepare(function), self.call).run(arguments)
             except NewTargets as news:
                 self.jumps.setdefault(news.address, set()).update(news.targets)
                 del self.prepared[function.start]
-                summary = None
-        if summary is None:
+                found = ()
+        if not found:
             self._prepare(function)
             return self._explored(function, arguments)
-        for head, count in summary.passes.items():
+        for head, count in found[0].passes.items():
             place = (function.name, head)
             self.passes[place] = max(count, self.passes.get(place, 0))
-        return summary
+        return found
 
     def _prepare(self, function: ElfFunction) -> Prepared:
         if function.start not in self.prepared:
@@ -150,7 +150,7 @@ class Analysis:
         nest = loop_nest(function.start, graph.successors)
         live = live_before(graph, {callee.start: self._reads(callee) for callee in graph.calls.values()})
         known = {head: bound.passes for head, bound in self._stated(graph, nest)}
-        return Prepared(graph, nest, live, _meeting_places(graph), known)
+        return Prepared(graph, nest, live, _meeting_places(graph), known, function.name in FLOAT_RESULTS)
 
     def _reads(self, function: ElfFunction) -> Locations:
         return self.prepared[function.start].live[function.start] & ARGUMENTS
@@ -167,7 +167,24 @@ def _meeting_places(graph: FlowGraph) -> frozenset[int]:
     for targets in graph.successors.values():
         for target in targets:
             (twice if target in seen else seen).add(target)
-    return frozenset(twice)
+    several = {
+        target
+        for place, callee in graph.calls.items()
+        if callee.name in FLOAT_RESULTS
+        for target in graph.successors[place]
+    }
+    return frozenset(twice | several)
+
+
+def _by_part(summaries: Sequence[Summary]) -> tuple[Summary, ...]:
+    """One summary, or one for each part of the finite floats where each of them is in one."""
+    found: dict[int, list[Summary]] = {}
+    for summary in summaries:
+        parts = finite_parts(summary.results[0])
+        if summary.results[0] not in parts:
+            return (_joined(summaries),)
+        found.setdefault(parts.index(summary.results[0]), []).append(summary)
+    return tuple(_joined(same) for same in found.values())
 
 
 def _joined(summaries: Sequence[Summary]) -> Summary:

@@ -25,6 +25,9 @@ FLOAT_CLASSES = tuple(words.interval(sign | low, sign | high) for sign in (0, 1 
 # By the number of leading zeros, on which the passes of a long division depend.
 BIT_LENGTHS = (words.constant(0), *(words.interval(1 << k, (2 << k) - 1) for k in range(32)))
 
+# Their result is a float in r0.
+FLOAT_RESULTS = frozenset({"__aeabi_fadd", "__aeabi_fsub", "__aeabi_fmul", "__aeabi_fdiv"})
+
 # Each set of classes covers all 2^32 words, so that a wrong entry here costs time or sharpness, never truth.
 _FLOATS, _NUMBERS = (FLOAT_CLASSES, FLOAT_CLASSES), (BIT_LENGTHS, BIT_LENGTHS)
 ARGUMENT_CLASSES: Mapping[str, Sequence[tuple[Word, ...]]] = {
@@ -43,3 +46,15 @@ def cases(function: str, arguments: Mapping[int, Word]) -> list[dict[int, Word]]
             parts = [words.common(word, arguments[register]) for word in classes]
             found = [{**case, register: part} for case in found for part in parts if part]
     return found
+
+
+# Zero and the other finite numbers, with each sign.
+_FINITE_PARTS = tuple((sign | low, sign | high) for sign in (0, 1 << 31) for low, high in ((0, 0), (1, 0x7F7FFFFF)))
+
+
+def finite_parts(word: Word) -> tuple[Word | None, ...]:
+    """What of `word` is zero and what is another finite float, with each sign; all None where something of it is no finite float."""
+    outside = (words.within(word, sign | 0x7F800000, sign | 0x7FFFFFFF) for sign in (0, 1 << 31))
+    if any(outside):
+        return (None,) * len(_FINITE_PARTS)
+    return tuple(words.within(word, low, high) for low, high in _FINITE_PARTS)

@@ -10,7 +10,7 @@ from verification.static_bound.state import NOWHERE, Derive, Flags, State
 from verification.static_bound.thumb import LOADS, PC, SP, STORES, Instruction
 from verification.static_bound.words import MASK, TOP, Word
 
-MOST_ADDRESSES = 64  # a table that is read at more places than this is not looked up
+MOST_ADDRESSES = 256  # a table that is read at more places than this is not looked up
 MOST_VALUES = 32  # nor is one that gives more different words
 MOST_SHIFTS = 40
 
