@@ -91,6 +91,7 @@ HOURS: dict[str, str] = {
     "blind_fresh_real": "twinlaw blind score real answers-real --json",
     "blind_fresh_second": "twinlaw blind score second answers-second --json",
     "cycles": "python -m tests.verification.cycles docs/results/cycles.json",
+    "dearest": "python -m tests.verification.dearest docs/results/dearest.json",
     "million_frames": "python -m tests.rig.link.campaign 1000000 docs/results/million_frames.json",
     "million_steps": "python -m tests.rig.link.image_campaign 1000000 docs/results/million_steps.json",
     "real_rigs": "python tests/real_rigs.py rigs --most 6 --keep docs/results/real_rigs.json",
