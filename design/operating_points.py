@@ -50,25 +50,30 @@ def grid(settings: DesignSettings) -> Array:
 
 
 def rest(bound: BoundPlant, settings: DesignSettings, psi_rad: float) -> OperatingPoint:
-    """Eq (16) with the scheduling axis at this angle and all others at 0, or, of a plant that has no position at all, with what its loops
-    measure in the middle of their references, the scheduling one at this value.
+    """Eq (16) with the scheduling axis at this angle and every other one where its loop rests, those without a loop at 0; of a plant that
+    has no position at all with all that its loops measure there.
 
     Raises BadInput naming value and input beyond its limits.
     """
-    arms = [axis for axis in bound.model.axes if axis.position is not None]
-    schedule = settings.schedule
-    if not arms:
-        middles = [
-            psi_rad
-            if schedule is not None and axis.axis == schedule.axis
-            else 0.5 * (axis.reference_min_rad + axis.reference_max_rad)
-            for axis in settings.axes
-        ]
-        return rest_with(bound, wiring(bound, settings.loops).outputs, middles)
-    if schedule is None:
-        return equilibrium(bound)
-    scheduling = settings.loop(schedule.axis)
-    return rest_with(bound, wiring(bound, (scheduling,)).outputs, (psi_rad,))
+    scheduling = "" if settings.schedule is None else settings.schedule.axis
+    has_position = any(axis.position is not None for axis in bound.model.axes)
+    rests_at = _rests_at if has_position else _middle
+    values = {axis.axis: psi_rad if axis.axis == scheduling else rests_at(axis) for axis in settings.axes}
+    if has_position:
+        values = {name: value for name, value in values.items() if name == scheduling or value != 0.0}
+        if not values:
+            return equilibrium(bound)
+    loops = tuple(loop for loop in settings.loops if loop.axis in values)
+    return rest_with(bound, wiring(bound, loops).outputs, [values[loop.axis] for loop in loops])
+
+
+def _rests_at(axis: AxisSettings) -> float:
+    """0 where the loop's references reach it, else their middle: a ball below its magnet is never at the magnet."""
+    return 0.0 if axis.reference_min_rad <= 0.0 <= axis.reference_max_rad else _middle(axis)
+
+
+def _middle(axis: AxisSettings) -> float:
+    return 0.5 * (axis.reference_min_rad + axis.reference_max_rad)
 
 
 def equilibria(bound: BoundPlant, settings: DesignSettings, psi_rad: Array) -> tuple[OperatingPoint, ...]:

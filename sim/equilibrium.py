@@ -78,13 +78,23 @@ def rest_with(bound: BoundPlant, places: Sequence[int], values: Sequence[float])
     if not arms:
         return _measured(bound, wanted)
     try:
-        return equilibrium(bound, *(at.get(axis.position, 0.0) for axis in arms))
+        point = equilibrium(bound, *(at.get(axis.position, 0.0) for axis in arms))
     except NoRestPoint:
         if all(axis.position in at for axis in arms):
             raise
         with suppress(BadInput):
             return _within_stops(bound, arms, _measured(bound, wanted))
         raise
+    if set(at) <= {axis.position for axis in arms} or _measures(bound, point, wanted):
+        return point
+    return _within_stops(bound, arms, _measured(bound, wanted))
+
+
+def _measures(bound: BoundPlant, point: OperatingPoint, wanted: Mapping[int, float]) -> bool:
+    """Whether the outputs are what is wanted: one that is no axis' position may be anything where these are at rest."""
+    signs = np.zeros(len(bound.model.axes))
+    found = reference(bound.model).outputs(0.0, point.x0, point.u0, bound.p, signs)
+    return all(abs(found[place] - value) <= RATE_TOLERANCE * max(1.0, abs(value)) for place, value in wanted.items())
 
 
 def _within_stops(bound: BoundPlant, arms: Sequence[Axis], point: OperatingPoint) -> OperatingPoint:
@@ -245,7 +255,7 @@ def _check_inputs(bound: BoundPlant, u0: Array, where: str) -> None:
 
 def _place(bound: BoundPlant, positions_rad: tuple[float, ...]) -> str:
     arms = [axis for axis in bound.model.axes if axis.position is not None]
-    angles = ", ".join(_told(axis, position) for axis, position in zip(arms, positions_rad, strict=False))
+    angles = ", ".join(map(_told, arms, positions_rad or [0.0] * len(arms)))
     return f"plant {bound.plant.name!r} at {angles}"
 
 

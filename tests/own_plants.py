@@ -326,11 +326,18 @@ return Model(
     input_limits={u: (0, 24)},
     places=Places(
         inputs={"coil": InputPlace(u, "V", 20.0)},
-        axes={"ball": AxisPlace("gap_m", "N", 0.5, length_unit="m")},
+        axes={"ball": AxisPlace("gap_m", "N", 0.5)},
         sensors={"light": SensorPlace("gap_m", "m", 0.01)},
     ),
 )
 """,
+)
+
+# The same ball, its place measured from the magnet: at 0 no current holds it.
+FROM_THE_MAGNET = OwnPlant(
+    MAGNET.parameters,
+    {"z_m": 1e-5},
+    MAGNET.body.replace("gap_m", "z_m").replace('(p["z0"] + gap)', "gap"),
 )
 
 # A pole that stands on a cart: the cart's place, the pole's angle, and the place of the pole's tip.

@@ -17,7 +17,7 @@ from sim.bind import BoundPlant, bind
 from sim.manoeuvres import steps
 from tests.angles import few_angles
 from tests.other_plants import AEROSHIELD, INVERTED_ARM, MOTOR, QUANSER, written
-from tests.own_plants import CART_POLE, FREE_SWING, HEATER, MAGNET
+from tests.own_plants import CART_POLE, FREE_SWING, FROM_THE_MAGNET, HEATER, MAGNET
 from tests.soak import SOAK
 
 MAGNET_WISHES: dict[str, Any] = {
@@ -133,6 +133,16 @@ def test_a_ball_under_a_magnet_is_held_without_a_word_about_margins(tmp_path: Pa
     table, report = designed(bind(load_plant(MAGNET.write(tmp_path, "magnet"))), MAGNET_WISHES)
     assert (table.order, table.sample_period_s) == (3, 0.0005)
     assert 0.001 < report.axes[0].worst_margins.delay_s < 0.02
+
+
+def test_a_loop_whose_references_do_not_reach_0_rests_in_their_middle(tmp_path: Path) -> None:
+    """Truth: 10 mm below the magnet C i^2 / z^2 = m g takes i = z sqrt(m g / C) = 1.0131 A and R i = 10.131 V."""
+    away = {**MAGNET_WISHES["ball"], "reference_min_m": 0.008, "reference_max_m": 0.012}
+    bound = bind(load_plant(FROM_THE_MAGNET.write(tmp_path, "magnet")))
+    table, _ = designed(bound, {**MAGNET_WISHES, "ball": away})
+    assert table.axes[0].feedforward_V[0] == pytest.approx(10.131, abs=1e-3)
+    with pytest.raises(BadInput, match=r"plant 'magnet' at 0 m: equilibrium"):
+        designed(bound, MAGNET_WISHES)
 
 
 def test_a_slow_plant_is_given_the_time_to_arrive(tmp_path: Path) -> None:
