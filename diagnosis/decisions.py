@@ -335,6 +335,12 @@ KNOWS_NOTHING = Limit(
 ANOTHER_PLANT = Limit(
     8.0, "standard deviations", "a parameter so far off beside every effect is another plant's", "logs of other rigs"
 )
+GROWN = Limit(
+    10.0,
+    "1",
+    "an unstable plant is asked no further ahead than an error of its start takes to grow so much",
+    "a ball below a magnet (100 rad/s) by its own model, over holding: 3e6 in windows of 1 s, 0.4 in those of 23 ms",
+)
 MOVES_FLOORS = Limit(5.0, "floors", "windows in which an output moves less do not count")
 WIRING_S = Limit(20.0, "s", "of each log: time")
 WIRING_DEVIATIONS = Limit(

@@ -100,7 +100,7 @@ def _contradicting(note: Note, likelier: str) -> str:
 def _knows_nothing(note: Note) -> str:
     told = ", ".join(f"{name} {value:.2g}" for name, value in note.numbers.items())
     return (
-        "this plant does not fit these logs at all: whatever is added to it, its predictions over 1 s are no better than holding "
+        "this plant does not fit these logs at all: whatever is added to it, its predictions are no better than holding "
         f"the last reading (error over that of holding: {told}); check that they belong together, columns, signs and units"
     )
 

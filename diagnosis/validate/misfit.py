@@ -1,23 +1,29 @@
 """Does the plant, with all that was found, know these logs at all? Its predictions against those of somebody who knows nothing."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis
-from diagnosis.validate.prediction import predictions, windows
+from diagnosis.validate.prediction import WINDOW_S, Span, predictions, windows
+from sim.bind import BoundPlant
+from sim.kernel.reference import reference
 
+LEAST_ROWS = 5  # of a window: fewer hardly move
 Array = NDArray[np.float64]
 
 
 def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
-    """RMS error of 1 s predictions by output, over the RMS change of the readings since each window's start: 1 is to know nothing.
+    """RMS error of predictions by output, over the RMS change of the readings since each window's start: 1 is to know nothing.
 
+    Windows are of 1 s, or as long as an unstable plant lets an error of the start grow by `decisions.GROWN`: beyond, nobody knows more.
     Outputs that hardly move are left out: nothing could be known better than that they stand.
     """
     outputs = list(case.library.bound.model.outputs)
-    pairs = [_squares(flight, predictions(case, flight, hypothesis)) for flight in case.flights]
+    pairs = [_squares(case, flight, hypothesis) for flight in case.flights]
     own, still = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
     found = {}
     for place, name in enumerate(outputs):
@@ -28,12 +34,28 @@ def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     return found
 
 
-def _squares(flight: FilteredLog, predicted: Array) -> tuple[Array, Array]:
+def _squares(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> tuple[Array, Array]:
     """Squared errors (rows, outputs) of the predictions, and of holding each window's first reading, over the same rows."""
-    y = flight.log.y
-    held = np.full_like(y, np.nan)
-    for first, last in windows(flight.log.t_s):
-        held[first:last] = y[first]
-    own, still = (predicted - y) ** 2, (held - y) ** 2
+    y, held = flight.log.y, np.full_like(flight.log.y, np.nan)
+    spans = [
+        Span(first, first, last) for first, last in windows(flight.log.t_s, foreseen_s(case.library.bound, flight))
+    ]
+    for span in spans:
+        held[span.first : span.last] = y[span.first]
+    own, still = (predictions(case, flight, hypothesis, spans) - y) ** 2, (held - y) ** 2
     both = np.isfinite(own) & np.isfinite(still)
     return np.where(both, own, np.nan), np.where(both, still, np.nan)
+
+
+def foreseen_s(bound: BoundPlant, flight: FilteredLog) -> float:
+    """How long an error of the state takes to grow by `decisions.GROWN`, by the plant's fastest unstable pole where the log starts.
+
+    A window's second at most, and a few rows at least.
+    """
+    model = bound.model
+    x0, u0 = flight.x0[: len(model.states)], np.nanmedian(flight.log.u, axis=0)
+    with np.errstate(all="ignore"):
+        A = reference(model).A(0.0, x0, u0, bound.p, np.zeros(len(model.axes)))
+    fastest_rad_s = float(np.max(np.linalg.eigvals(A).real)) if np.all(np.isfinite(A)) else 0.0
+    grown_s = math.log(decisions.GROWN) / fastest_rad_s if fastest_rad_s > 0.0 else WINDOW_S
+    return min(WINDOW_S, max(grown_s, LEAST_ROWS * flight.step_s))

@@ -84,9 +84,9 @@ def _pace(t_s: Array) -> float:
     return min(1.0, float(t_s[-1] - t_s[0]) / (SETTLE_S + WINDOW_S)) if len(t_s) >= SHORT_ROWS else 1.0
 
 
-def windows(t_s: Array) -> list[tuple[int, int]]:
+def windows(t_s: Array, length_s: float = WINDOW_S) -> list[tuple[int, int]]:
     """First row and row after the last of each window."""
-    number = np.floor((t_s - t_s[0]) / (WINDOW_S * _pace(t_s)) + 1e-9).astype(int)
+    number = np.floor((t_s - t_s[0]) / (length_s * _pace(t_s)) + 1e-9).astype(int)
     edges = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(t_s)]
     return [(first, last) for first, last in pairwise(edges) if last - first > 1]
 
