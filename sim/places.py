@@ -5,6 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import sympy
 
+from records.text.units import unit_suffix
+
 Edit = Callable[[sympy.Expr], sympy.Expr]
 
 
@@ -42,18 +44,22 @@ class AxisPlace:
     """A mechanical axis: what a typical torque (force) and speed on it are, their units, and gravity's torque if it has one.
 
     `gravity_moment` is the factor of `gravity` that a moved balance weight changes; `vertical` is an axis that gravity turns about,
-    `level` one that it does not, as long as the base is level.
+    `level` one that it does not, as long as the base is level. `length_unit` is that of the angle's name where nothing else is said.
     """
 
     angle: str
     torque_unit: str
     torque_size: float
-    length_unit: str = "rad"
+    length_unit: str = ""
     speed_size: float = 1.0
     gravity: sympy.Expr | None = None
     gravity_moment: sympy.Expr | None = None
     level: bool = False
     spun_by: str = ""  # the rotor whose acceleration turns this axis the other way
+
+    def __post_init__(self) -> None:
+        if not self.length_unit:
+            object.__setattr__(self, "length_unit", "m" if unit_suffix(self.angle) == "m" else "rad")
 
 
 @dataclass(frozen=True)
