@@ -3,10 +3,11 @@
 import ast
 import contextlib
 import hashlib
+import io
 import sys
 import traceback
 from types import ModuleType
-from typing import Any
+from typing import Any, TextIO
 
 from records.errors import BadInput
 from records.pages import page
@@ -14,6 +15,8 @@ from records.plant import Equations
 from sim.model import Model
 
 REMEDY = f"see {page('new-plant.md')}"
+# What Python, math and NumPy say of a symbol where they need a number.
+_NUMBER_WANTED = ("truth value", "to float", "to int", "ufunc")
 
 
 def run_file(equations: Equations) -> Model:
@@ -21,7 +24,17 @@ def run_file(equations: Equations) -> Model:
 
     The file is a program and may do what any program of this user may. What it prints goes to stderr, where no answer stands.
     """
-    with contextlib.redirect_stdout(sys.stderr):
+    model = _model(equations, sys.stderr)
+    if _equations_of(model) != _equations_of(_model(equations, io.StringIO())):
+        raise refused(
+            equations, line_of(equations, "model"), "equations", "others at each run of the file", "the same at every run",
+            "leave out what differs, a random number or the time of day",
+        )  # fmt: skip
+    return model
+
+
+def _model(equations: Equations, printed: TextIO) -> Model:
+    with contextlib.redirect_stdout(printed):
         try:
             function = _module(equations).__dict__.get("model")
             if not callable(function):
@@ -38,6 +51,11 @@ def run_file(equations: Equations) -> Model:
         got = f"model() gives {shown(model)}"
         raise refused(equations, line_of(equations, "model"), "equations", got, "a sim.model.Model", REMEDY)
     return model
+
+
+def _equations_of(model: Model) -> str:
+    """What of a model is equations, as text."""
+    return repr((model.states, model.rates, model.axes, model.outputs, model.input_limits))
 
 
 def refused(equations: Equations, line: int, what: str, got: str, expected: str, remedy: str) -> BadInput:
@@ -95,4 +113,6 @@ def _stopped(equations: Equations, error: BaseException) -> BadInput:
     remedy = "mend that line"
     if isinstance(error, ModuleNotFoundError):
         remedy = "the equations are this one file: what it imports must be installed, or stand in it"
+    if isinstance(error, TypeError) and any(words in told for words in _NUMBER_WANTED):
+        remedy = "names are symbols here: take sympy's sin, Abs, Max in place of math's or NumPy's, and sympy.Piecewise for a choice"
     return refused(equations, lines[-1] if lines else 0, "equations", got, "equations that run", remedy)

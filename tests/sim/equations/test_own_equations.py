@@ -43,6 +43,9 @@ SLIPS = {
     "an exception while the model is made": ('p["K"] * u', "1 / 0 * u", "ZeroDivisionError"),
     "a module that is not there": ("import sympy", "import sympy, my_constants", "must be installed, or stand in it"),
     "an end of the program": ("import sympy", "import sympy; raise SystemExit(3)", "SystemExit: 3"),
+    "a choice by Python": ('p["K"] * u', 'p["K"] * (u if u > 0 else 0)', "sympy.Piecewise for a choice"),
+    "a sine of math": ('p["K"] * u', 'p["K"] * __import__("math").sin(u)', "take sympy's sin"),
+    "a sine of NumPy": ('p["K"] * u', 'p["K"] * __import__("numpy").sin(u)', "take sympy's sin"),
     "one symbol instead of a tuple": ("inputs=(u,)", "inputs=(u)", "inputs=(A,)"),
     "a list instead of a tuple": ("states=(theta, omega)", "states=[theta, omega]", "a tuple"),
     "a matrix where a number belongs": ("rates={theta: omega}", "rates={theta: sympy.eye(2)}", "one number or SymPy"),
@@ -160,3 +163,10 @@ def test_a_stir_stays_within_the_limits_and_begins_at_rest(folder: Path) -> None
     assert np.all(np.abs(moved.u) <= 10.0)
     assert moved.u[0] == pytest.approx([0.0], abs=1e-9)
     assert moved.x0 == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_equations_that_differ_at_each_run_are_refused(folder: Path) -> None:
+    """Truth: what is proved and flown is one plant; a random number in it makes another of each run."""
+    edited(folder, 'p["K"] * u', '__import__("random").random() * u')
+    with pytest.raises(BadInput, match="got others at each run of the file, expected the same at every run"):
+        bind(load_plant(folder / "plant.toml"))
