@@ -4,11 +4,18 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from design.settings import DEFAULTS, MARGIN_DEFAULTS, read_settings
+from records.plant import load_plant
+from records.text import checks
+from sim.bind import bind
+from tests.other_plants import written_file
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 
@@ -95,3 +102,71 @@ def run(command: list[str], folder: Path, standard_input: str = "") -> str:
     done = subprocess.run(command, cwd=folder, input=standard_input, capture_output=True, text=True, env=environment)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
+
+
+KEYS_OF = (
+    '[design]\nsample_period_s = 0.001\nschedule = "theta_rad"\ntheta_min_rad = -3.0\ntheta_max_rad = 3.0\n'
+    + """
+[design.shaft]
+poles_rad_s = [-8.0, -12.0, -70.0, -90.0, -940.0, -1000.0]
+reference_min_rad = -3.0
+reference_max_rad = 3.0
+
+[design.margins]
+
+[board]
+theta_rad = { encoder = ["PA0", "PA1"] }
+u_V = { pwm = "PA8" }
+
+[correlation]
+names = ["R", "L"]
+rows = [[1.0, 0.1], [0.1, 1.0]]
+"""
+)
+# Where a section stands in what the loader names, and what the page calls it.
+SECTIONS = {
+    r"plant\.toml": "the file",
+    r".*: parameters\.\w+": "`[parameters.NAME]`",
+    r".*: sensors\.\w+": "`[sensors.OUTPUT]`",
+    r".*: design": "`[design]`",
+    r".*design\.shaft": "`[design.LOOP]`",
+    r".*design\.margins": "`[design.margins]`",
+    r".*board\.\w+": "`[board]`",
+    r".*: correlation": "`[correlation]`",
+}
+# Other ways' keys, loops' names, and those of a loop's record, which are made of its section.
+BESIDE = {
+    "`[design]`": {"shaft"},
+    "`[design.LOOP]`": {"axis", "motor", "pins"},
+    "`[board]`": {"analogue", "zero_scale_rad", "full_scale_rad"},
+    "the file": {"model"},
+}
+
+
+def test_the_page_has_every_key_that_the_loader_knows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Truth: the keys that each section is asked for while a plant with all of them is read, and those of the other ways beside."""
+    known: dict[str, set[str]] = {}
+
+    def keys(section: Mapping[str, Any], where: str, required: Sequence[str], optional: Sequence[str] = ()) -> None:
+        name = next((name for place, name in SECTIONS.items() if re.fullmatch(place, where.rpartition("/")[2])), where)
+        known.setdefault(name, set()).update(required, optional)
+
+    path = written_file("motor", tmp_path, KEYS_OF)
+    monkeypatch.setattr(checks, "keys", keys)
+    read_settings(bind(load_plant(path)))
+    told = {
+        cells[1].strip(): set(re.findall(r"`(\w+)`", cells[2]))
+        for line in PAGE.read_text().partition("## Every key")[2].splitlines()
+        if len(cells := line.split("|")) > 3
+    }
+    for name, wanted in known.items():
+        beside = BESIDE.get(name, set())
+        if name in SECTIONS.values():
+            assert told[name] - beside == wanted - beside, name
+    assert set(SECTIONS.values()) <= set(known)
+
+
+def test_the_page_has_the_defaults_of_the_keys() -> None:
+    page = PAGE.read_text()
+    for key, value in {**DEFAULTS, **MARGIN_DEFAULTS}.items():
+        assert f"`{key}` ({value:g}" in page, key
