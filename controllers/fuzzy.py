@@ -282,6 +282,7 @@ CONTROLLER = EquationController(
     title="Mamdani fuzzy, 90 and 18 rules",
     source="seed 001, section 4, Figs. 7-11 and Tables I-VI",
     plants="a helicopter of two axes, as `ce150`, on which it settles: its rules know no model, so it is flown there first",
+    needs="its rules are of degrees of elevation and azimuth",
     note=(
         "has the rules of Tables I-VI, max-min inference and the centroid. The paper's stored text has the figures' labels and "
         "axes, not their curves: universes, output peaks, regions and rules are read from it. Open are the widths of the error's sets, the "

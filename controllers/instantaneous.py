@@ -209,6 +209,7 @@ CONTROLLER = EquationController(
     title="pole placement by instantaneous linearisation",
     source="seed 000, section 3.4: the design that the scheduled law replaces",
     plants="eqs (4)-(9) of `ce150` with its parameters, which the board solves anew at every sample",
+    needs="its board solves the helicopter's own equations at every sample",
     note=(
         "is the same law as `scheduled` without its roll-off, its coefficients solved on the board at every sample from the plant's "
         "parameters: operating point, linearisation, sampling and eq (26) at the measured elevation. The plain form, seven equations in "

@@ -185,6 +185,7 @@ CONTROLLER = EquationController(
     title="LQG: Kalman filter and LQR, scheduled",
     source="ours: what the papers' controllers are to be beaten by",
     plants="a helicopter of two axes, each behind one rotor lag, as `ce150`, on which it settles",
+    needs="its filter knows a rotor's lag and an arm that gravity turns",
     note=(
         "is a Kalman filter, which knows the rotor's lag and estimates the voltage that is missing for whatever the plant file "
         "does not know, and an LQR on its estimate, both from Riccati equations at the 17 operating points and scheduled by "

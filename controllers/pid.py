@@ -157,6 +157,7 @@ CONTROLLER = EquationController(
         "a helicopter of two axes, each behind one rotor lag, as `ce150`, on which one set of gains an axis is robust at every elevation "
         "of its range, and settles; any other on which the gains of its [design.tuned.pid] do"
     ),
+    needs="its gains are sought over elevations, behind one rotor lag an axis",
     note=(
         "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 3 (elevation) and 2 (azimuth) at "
         "every operating point, with Ti >= 4 Td and Tf = Td/10; the elevation's bound is 3 because one set of gains reaches no less than "

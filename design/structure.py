@@ -86,13 +86,13 @@ def missing(bound: BoundPlant) -> tuple[str, ...]:
     return tuple(_missing(bound))
 
 
-def demand_helicopter(bound: BoundPlant, what: str = "image, board and line") -> None:
-    """Raise BadInput naming what the plant lacks for `what`, which are still the helicopter's."""
+def demand_helicopter(bound: BoundPlant, what: str, why: str) -> None:
+    """Raise BadInput naming what the plant lacks for `what`, which is the helicopter's, and why."""
     lacking = missing(bound)
     if lacking:
         got = f"the equations of {bound.plant.model}, without {', '.join(lacking[:4])}{' and more' if len(lacking) > 4 else ''}"
-        expected = f"a helicopter with elevation and azimuth, as model ce150 has them, for {what}"
-        remedy = "give such a plant; `design`, `generate`, `verify`, `simulate`, `identify` and `diagnose` take others"
+        expected = f"a helicopter with elevation and azimuth, as model ce150 has them: {why}"
+        remedy = "give such a plant, or fly this one by the scheduled law, which `design` makes without --controller"
         raise BadInput(f"plant for {what}", f"plant {bound.plant.name!r}", got, expected, remedy)
 
 

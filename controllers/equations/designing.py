@@ -10,7 +10,6 @@ from design.discretise import SampledPlant, sample
 from design.linearise import LinearPlant, linearise, of_loops, subsystem
 from design.operating_points import equilibria, grid
 from design.settings import DesignSettings
-from design.structure import demand_helicopter
 from design.table import frame_entries
 from records.errors import BadInput
 from records.law_table import AxisTable, LawTable
@@ -61,7 +60,6 @@ class Points:
 
 def points_of(bound: BoundPlant, settings: DesignSettings) -> Points:
     """The operating points of the nominal plant: controllers are designed without added effects. Raises BadInput for one out of reach."""
-    demand_helicopter(bound, "this controller")
     seen = without_effects(bound) if bound.effects else bound
     psi_rad = grid(settings)
     points = equilibria(seen, settings, psi_rad)

@@ -11,6 +11,7 @@ from controllers.equations.exact import EquationLaw, EquationTwin
 from controllers.equations.source import generate
 from controllers.equations.tuned import Tunable
 from design.settings import DesignSettings
+from design.structure import demand_helicopter
 from records.law_table import LawTable, law_table_text
 from sim.bind import BoundPlant
 from sim.loop import Controller
@@ -20,14 +21,15 @@ from sim.loop import Controller
 class EquationController:
     """A row of the table.
 
-    `gains` is the record of one axis' own numbers, `tables` designs at the operating points, `template` is its file in
-    controllers/templates; `tunable` is what a plant's file may say of it.
+    `needs` says why it is no other plant's. `gains` is the record of one axis' own numbers, `tables` designs at the operating points,
+    `template` is its file in controllers/templates; `tunable` is what a plant's file may say of it.
     """
 
     name: str
     title: str
     source: str
     plants: str
+    needs: str
     note: str
     equations: AxisEquations
     gains: type
@@ -37,7 +39,12 @@ class EquationController:
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> LawTable[Any]:
         """The table on this plant; raises BadInput where it cannot be designed."""
-        return self.tables(points_of(bound, settings))
+        return self.tables(self.points(bound, settings))
+
+    def points(self, bound: BoundPlant, settings: DesignSettings) -> Points:
+        """What it is designed on; raises BadInput for a plant that it cannot have."""
+        demand_helicopter(bound, f"the controller {self.name!r}", self.needs)
+        return points_of(bound, settings)
 
     def text(self, table: LawTable[Any]) -> str:
         """The table as JSON text with its digest."""

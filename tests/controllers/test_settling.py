@@ -70,7 +70,7 @@ def test_every_controller_says_for_which_plants_it_is() -> None:
     wished = bind(replace(aeroshield.plant, design=AEROSHIELD))
     settings = read_settings(wished)
     for name in set(CONTROLLERS) - {"scheduled"}:
-        with pytest.raises(BadInput, match=r"without the input u_M_V.*this controller"):
+        with pytest.raises(BadInput, match=rf"plant for the controller '{name}'.*without the input u_M_V"):
             CONTROLLERS[name].design(wished, settings)
 
 

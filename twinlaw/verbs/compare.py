@@ -60,7 +60,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Design, verify, fly, write, tell, and fail where bits differ."""
     bound = load_bound(chosen.plant)
-    demand_helicopter(bound, "the papers' controllers and manoeuvres")
+    demand_helicopter(
+        bound, "the papers' controllers and manoeuvres", "they are the papers' own rules, flown through their figures"
+    )
     wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
     names = tuple(dict.fromkeys(chosen.controllers))
     crew = sweeping.crew_of(chosen)

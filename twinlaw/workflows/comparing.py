@@ -6,7 +6,6 @@ from typing import Any
 
 from codegen.protocol_source import protocol_source
 from controllers.controller import Controller
-from controllers.equations.designing import points_of
 from controllers.equations.equation_controller import EquationController
 from controllers.instantaneous import CONTROLLER as INSTANTANEOUS
 from controllers.settling import demand_settling
@@ -103,7 +102,7 @@ def tuned_text(bound: BoundPlant, name: str, seed: int) -> str:
     if not isinstance(row, EquationController):
         raise BadInput("--tune", f"controller {name!r}", "no open numbers", "pid or fuzzy", "leave --tune out")
     with stage(f"tuning {row.title} by flights"):
-        return tuned_section(name, tune(row, points_of(bound, read_settings(bound)), seed))
+        return tuned_section(name, tune(row, row.points(bound, read_settings(bound)), seed))
 
 
 def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> Mapping[str, str]:
