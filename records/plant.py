@@ -130,7 +130,7 @@ def read_equations(content: Mapping[str, Any], where: str, folder: Path) -> Equa
     file = checks.text(content["equations"], f"{where}: equations")
     stem = file.removesuffix(".py")
     if stem == file or not stem.isidentifier() or not stem.isascii() or keyword.iskeyword(stem):
-        expected = "the name of a Python file beside the plant file, of letters, digits and _"
+        expected = "the name of a Python file beside the plant file, of letters a to z, digits and _"
         raise BadInput("equations", f"{where}: equations", repr(file), expected, 'write equations = "my_arm.py", say')
     beside = f"the equations of {where} stand beside it; `twinlaw new-plant NAME --out DIR` writes both"
     return Equations(file, read_text(folder / file, "equations", beside), str(folder))

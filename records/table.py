@@ -320,7 +320,7 @@ def parse_loop(entry: Any, where: str) -> Loop:
         loop = replace(loop, pins=_pins(section["pins"], f"{where}.pins", loop))
     for name, value in named.items():
         if not _NAME.fullmatch(value):
-            expected = "letters, digits and _, as in C, a letter first, 31 at most"
+            expected = "letters a to z, digits and _, as in C, a letter first, 31 at most"
             raise BadInput("name", f"{where}.{name}", repr(value), expected, "choose another name")
     if loop.axis in (*_SHARED, *_OF_THE_LAW):
         got = f"{loop.axis!r}, which the table or its C has for something else"

@@ -140,7 +140,7 @@ def _names(model: Model, equations: Equations) -> Iterator[Slip]:
             if isinstance(name, str) and keyword.iskeyword(name):
                 yield Slip((name,), kind, f"{name!r}, a keyword of Python", "a name of its own", "rename it")
             elif not isinstance(name, str) or not name.isidentifier() or not name.isascii():
-                yield Slip((str(name),), kind, shown(name), "letters, digits and _, a letter first", "rename it")
+                yield Slip((str(name),), kind, shown(name), "letters a to z, digits and _, a letter first", "rename it")
             elif kind in ("state", "input") and _TAKEN.fullmatch(name):
                 got = f"{name!r}, which the compiled kernel has for something else"
                 yield Slip((name,), kind, got, "a quantity with its unit, such as theta_rad or u_V", "rename it")

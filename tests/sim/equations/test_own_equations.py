@@ -57,6 +57,7 @@ SLIPS = {
     "a function that no C has": ("rates={theta: omega}", "rates={theta: sympy.zeta(omega)}", "write it with these"),
     "an axis of another velocity": ('Axis("arm", theta, omega', 'Axis("arm", theta, u', "a state: "),
     "a limit that moves": ("input_limits={u: (-10, 10)}", "input_limits={u: (-10, theta)}", "limit of u_V"),
+    "a letter that no C has": ('symbol("omega_rad_s")', 'symbol("ω_rad_s")', "expected letters a to z, digits and _"),
     "a name of the kernel's": ('symbol("u_V")', 'symbol("dx")', "the compiled kernel"),
     "a parameter called as the time": ('"b"', '"t_s"', "which the equations have for the time"),
     "a state called as a function": ('symbol("omega_rad_s")', 'symbol("sin")', "'sin', which the equations have for a function"),
