@@ -67,7 +67,11 @@ def _place_names(model: Model) -> Iterator[Slip]:
         if not name.isidentifier() or names.count(name) > 1:
             got = "a name that two places have" if names.count(name) > 1 else f"the name {name!r}"
             yield Slip(
-                (name, "places"), f"place {name!r}", got, "letters a to z, digits and _, once among all places", "rename it"
+                (name, "places"),
+                f"place {name!r}",
+                got,
+                "letters a to z, digits and _, once among all places",
+                "rename it",
             )
 
 
