@@ -19,9 +19,9 @@ from tests.verification.cycles import stimuli
 from twinlaw.workflows.chain.designing import design_controller
 from verification.stimuli import Stimulus
 
-TRIES = 3_000_000  # a minute and a half; twice as many find 20 cycles more
+TRIES = 3_000_000  # two minutes
 CLIMBERS = 8  # the dearest of the starts, each of which is changed in turn
-# Cycles that a change may lose, once in e times: dear steps lie apart, so that a search which only climbs ends 40 cycles lower.
+# Cycles that a change may lose, once in e times: dear steps lie apart, and a search that only climbs stays with one.
 FIRST_LOSS, LAST_LOSS = 12.0, 0.3
 INPUT_WORDS = 4
 LEVELS = 3000  # starts of numbers of like magnitude, for which sums cancel
