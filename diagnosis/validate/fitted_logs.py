@@ -15,15 +15,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class FittedLogs:
-    """The logs of a case, and the errors of what was judged on them already."""
+    """The logs of a case, and the errors and gains of what was judged on them already."""
 
     case: Case
     judged: dict[Hypothesis, Errors] = field(default_factory=dict)
+    gains: dict[tuple[Hypothesis, Hypothesis], float] = field(default_factory=dict)
 
     def gain(self, one: Hypothesis, other: Hypothesis) -> float:
         """By how many nats a reading `one` predicts these logs better than `other` (score.py), each under its own noise or under that of
         the other, whichever predicts better: noise is not what is asked."""
-        return score(self._better(one, other), self._better(other, one)).gain
+        if (one, other) not in self.gains:
+            self.gains[one, other] = score(self._better(one, other), self._better(other, one)).gain
+        return self.gains[one, other]
 
     @property
     def seconds(self) -> int:
