@@ -28,16 +28,16 @@ CLEAR_SCATTER = Limit(
     "measured scatter counts as noise only where it is clearly above what the sensor states: rounding alone is none",
     DEVELOPMENT,
 )
-MISSING_STEP = Limit(
-    1.5, "usual steps", "a longer step has rows missing, and the commands within it are not known", DEVELOPMENT
+MORE_THAN_ONE = Limit(
+    1.5,
+    "rows, counts, encoder steps",
+    "what comes in whole numbers is more than one: rows are missing, a count is no single one, a grid is coarser, a slip is no rounding",
+    DEVELOPMENT,
 )
 MERELY_ROUNDED = Limit(
     1.01,
     "variances of rounding",
     "with more noise a reading is carried over an edge and back, and the edge tells nothing",
-)
-ONE_COUNT = Limit(
-    1.5, "counts, rows", "a larger change is no single count, a longer step has rows missing", "quiet development cases"
 )
 SLOW_COUNTS = Limit(
     0.5, "counts per row", "of faster motion an edge tells no more than the count", "quiet development cases"
@@ -52,7 +52,6 @@ TURNED = Limit(
     "at a turning point an edge is passed faster than on average over the count",
     "quiet development cases",
 )
-COARSE_STEP = Limit(1.5, "encoder steps", "a coarser grid's step has at least so many", DEVELOPMENT)
 LEAST_VALUES = Count(3, "different counts passed", "fewer show no grid")
 GRID_NATS = Limit(
     16.0, "nats", "a coarser grid's evidence beyond ln of the counts: of 900 random logs chance found a grid in five"
@@ -101,8 +100,15 @@ TAKEN_IN = Limit(
     10.0,
     "nats",
     "so much must be gained by anything further, an effect, lost frames, a delay that scatters, commands between "
-    "rows: chance gains 5 by the best of fifty",
+    "rows; friction a little other than the model's may gain as much, nothing may where it has none: chance gains 5 by the best of fifty",
     DEVELOPMENT,
+)
+FAR_LIKELIER = Limit(
+    20.0,
+    "nats",
+    "a name than torques that come and go, beside which nothing shows; an axis that creeps or gives than one that sticks",
+    "dry friction of 0.3 mN m under such a torque gained 21, a weight shift of the third rig 85, a rig without effects -41; "
+    "seventeen cases of the second rig and of seed 900011",
 )
 SURE_ROUGHNESS = Limit(
     5.0,
@@ -132,12 +138,6 @@ SURE_GAP = Limit(
 BEGINNING_ROWS = Count(
     2500, "rows", "of a log, by which noise is first estimated: its few numbers are known to some per cent from those"
 )
-OVER_NOISE = Limit(
-    20.0,
-    "nats",
-    "a name must be likelier than torques that come and go, beside which nothing shows",
-    "dry friction of 0.3 mN m under such a torque gained 21, a weight shift of the third rig 85, a rig without effects -41",
-)
 MATTERS = Limit(
     0.04,
     "nats a reading",
@@ -155,12 +155,6 @@ USUAL_GUST = Limit(
     "shares of the axis' usual torque",
     "a larger torque that comes and goes is part of the gap, and names are sought without it",
     "third rig: to 0.03; EMPS, whose friction is left out: 0.1; AeroShield, which lacks two effects at once",
-)
-ALLOWED_GAIN = Limit(
-    10.0,
-    "nats",
-    "friction a little other than the model's may gain so much; nothing may where the model has none",
-    DEVELOPMENT,
 )
 TOLERATED_MOVE = Limit(
     1.0,
@@ -184,7 +178,6 @@ EVENT_GRID_S = Limit(0.3, "s", "spacing of the steps in time that are scored", D
 LEAST_EVENT_STEPS = Count(4, "steps", "of a log shorter than a second: fewer tell no pulse from a step")
 MOST_EVENT_STEPS = Count(200, "steps", "no more for long logs: time", DEVELOPMENT)
 EVENTS_APART_S = Limit(1.5, "s", "instants that are closer are one")
-INSTANTS = Count(3, "instants", "starts that are tried of an event, a sine or an input's steps: time")
 NEAR_PERIODS = Limit(
     3.0, "periods", "a frequency nearer to the motion's own, over a whole log, would be drawn to it", "EMPS"
 )
@@ -206,7 +199,8 @@ SINGLES = Count(7, "effects", "single effects that are fitted: time", DEVELOPMEN
 NEXT = Count(
     3,
     "hypotheses",
-    "tried of each kind beside or after the best, further effects, effects in the place of another, fits begun once more: time",
+    "tried of each kind beside or after the best, further effects, effects in the place of another, fits begun once more, starts of an "
+    "event, a sine or an input's steps: time",
     "pairs and triples of seeds 900006 and 900007",
 )
 BEAM = Counts((3, 2), "hypotheses", "of each size that are worth a further effect: time", DEVELOPMENT)
@@ -251,21 +245,19 @@ ASTRAY = Limit(
     "a fit whose parameters went further begins once more from the plant as stated: right ones go 1",
     DEVELOPMENT,
 )
-LEAST_SLIP = Limit(1.5, "counts", "a smaller slip of a sensor is rounding", DEVELOPMENT)
 YIELDING_FITTED = Count(2, "hypotheses", "beside which axes that yield are fitted")
-LEAST_YIELDING_GAIN = Limit(
-    20.0,
-    "nats",
-    "an axis must explain so much more when it creeps or gives",
-    "seventeen cases of the second rig and of seed 900011",
-)
 YIELDING_GAIN = Limit(
     80.0,
     "nats",
     "and all together: rigs that creep gained 110 to 765, flights whose friction is a bed of stiff bristles 63 at most",
     "seventeen cases of the second rig and of seed 900011",
 )
-YIELDING_ASKED = Count(4, "hypotheses", "beside which axes may yield", "seeds 900010 and 900011")
+ASKED = Count(
+    4,
+    "hypotheses, moves",
+    "the likeliest before anything is fitted: beside which axes may yield, of columns in other rows: time",
+    "seeds 900010 and 900011",
+)
 YIELDING_EARLY_SHARE = Limit(
     0.2,
     "share of the best single effect's gain",
@@ -307,7 +299,7 @@ ALIKE_SCALES = Limit(
 FREE_SPREAD = Limit(
     3.0,
     "standard deviations",
-    "a parameter within costs no more than its prior; what leaves it pays in full, as no form a little off makes that cheaper",
+    "a parameter within costs no more than its prior; what leaves it is told, and pays in full, as no form a little off makes that cheaper",
     "EMPS, where a friction that falls with speed fits better with another friction fifteen of them from what is published",
 )
 NATS_PER_FORM = Limit(2.0, "nats", "that each further form of a class costs, with ln of the number of its forms")
@@ -379,7 +371,6 @@ ROWS_REFUSED = Limit(
     "of a smaller gain one is told only: a plant that is faster than its file states gains some too",
     "flights of the CE150 with late commands gained 60 to 210, the yaw of a Quanser Aero 45",
 )
-ROWS_TRIED = Count(4, "moves", "fitted, the likeliest before anything is: time")
 ROWS_SURELY_LOST = Limit(
     -60.0,
     "nats",
@@ -389,7 +380,6 @@ ROWS_SURELY_LOST = Limit(
 ROWS_MOST = Count(6000, "rows", "of each log: ten times as many nats as a row of a published recording needs")
 
 # What is told beside it (explain)
-MOVED_FAR = Limit(3.0, "standard deviations", "a parameter further from its stated value is worth a sentence")
 IMITATED = Limit(0.995, "share of a signature", "that the plant's own parameters imitate, for a sentence")
 
 

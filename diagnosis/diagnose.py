@@ -125,14 +125,14 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     still need them.
     """
     begun = alone_of(seen)
-    first = begun.best(decisions.YIELDING_ASKED)
+    first = begun.best(decisions.ASKED)
     seen, again = _yielding(seen, first, decisions.YIELDING_EARLY_SHARE * (first[0].evidence - seen.retuned.evidence))
     if again is not None:
         further = _searched(again)
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):
             return again, further
     found = search(seen.case, seen.case.library.candidates, begun)
-    seen, again = _yielding(seen, found.fitted[: decisions.YIELDING_ASKED])
+    seen, again = _yielding(seen, found.fitted[: decisions.ASKED])
     if again is None:
         return seen, found
     further = _searched(again)

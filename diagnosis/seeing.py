@@ -134,9 +134,9 @@ def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
 def _over_noise(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
     """Whether it is by far likelier, as dry friction is that they follow, and the rule."""
     gain = best.evidence - seen.retuned.evidence
-    stands = bool(best.effects) and gain > decisions.OVER_NOISE
+    stands = bool(best.effects) and gain > decisions.FAR_LIKELIER
     outcome = "a cause is looked for" if stands else "noise"
-    return decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.OVER_NOISE, outcome), stands
+    return decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.FAR_LIKELIER, outcome), stands
 
 
 def _still(seen: Seen) -> Seen | None:

@@ -175,7 +175,7 @@ def misplaced(asked: Asked) -> tuple[Moved | None, tuple[Moved, ...]]:
     sound = bool(model.axes) and not is_strained(asked.case, asked.usual)
     seen = sound and max(promised[slip] for slip in asked.commands) < decisions.ROWS_SURELY_LOST
     likelier = sorted((slip for slip in singles if promised[slip] > 0.0), key=lambda slip: -promised[slip])
-    tried = (*(() if seen else asked.commands), *likelier[: decisions.ROWS_TRIED])
+    tried = (*(() if seen else asked.commands), *likelier[: decisions.ASKED])
     ones = dict(zip(tried, thread_map(asked.moved, tried), strict=True))
     commands = tuple(one for slip, one in ones.items() if slip in asked.commands)
     for one in sorted(ones.values(), key=lambda one: (-one.follows, -one.gain)):

@@ -85,7 +85,7 @@ def detect(
 def _allowed(case: Case) -> float:
     """Nats that may be gained without a gap: laws of friction differ in what no parameter of one can mimic."""
     rubs = len(case.library.frictionless) < len(case.library.bound.model.axes)
-    return decisions.ALLOWED_GAIN if rubs else 0.0
+    return decisions.TAKEN_IN if rubs else 0.0
 
 
 def _rule(name: str, chance: float, limit: float) -> Decision:

@@ -49,7 +49,7 @@ def likely_steps(linearisation: Linearisation, place: str, holds: Sequence[float
         step = float(steps[index])
         if all(max(step, other) > STEPS_APART * min(step, other) for other in found):
             found.append(step)
-        if len(found) == decisions.INSTANTS:
+        if len(found) == decisions.NEXT:
             break
     return found
 

@@ -60,7 +60,7 @@ def _pulses(times_s: Array, gram: Array, score: Array) -> list[tuple[float, floa
         start, duration = float(times_s[first[index]]), float(times_s[last[index]] - times_s[first[index]])
         if all(abs(start - other) > decisions.EVENTS_APART_S for other, _ in found):
             found.append((start, duration))
-        if len(found) == decisions.INSTANTS:
+        if len(found) == decisions.NEXT:
             break
     return found
 
@@ -75,7 +75,7 @@ def _peaks(power: Array) -> list[int]:
     for index in np.argsort(-power).tolist():
         if all(abs(index - other) > 2 for other in order):
             order.append(index)
-        if len(order) == decisions.INSTANTS:
+        if len(order) == decisions.NEXT:
             break
     return order
 

@@ -127,7 +127,7 @@ def _best(fitted: Array, gains: Array, apart: float) -> tuple[float, ...]:
     for index in np.argsort(-gains).tolist():
         if all(abs(fitted[index] - other) > apart for other in chosen):
             chosen.append(float(fitted[index]))
-        if len(chosen) == decisions.INSTANTS:
+        if len(chosen) == decisions.NEXT:
             break
     return tuple(chosen)
 

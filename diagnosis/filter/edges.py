@@ -29,8 +29,8 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
     edge, moved = 0.5 * (y[rows] + y[before]), moved[after - 1]
     h, lasts = t_s[rows] - t_s[before], np.diff(t_s[rows])
     travel = step * h / _shorter(lasts, np.sign(moved))
-    one_row = h < decisions.ONE_COUNT * float(np.median(np.diff(t_s[seen])))
-    sharp = (np.abs(moved) < decisions.ONE_COUNT * step) & one_row & (travel < decisions.SLOW_COUNTS * step)
+    one_row = h < decisions.MORE_THAN_ONE * float(np.median(np.diff(t_s[seen])))
+    sharp = (np.abs(moved) < decisions.MORE_THAN_ONE * step) & one_row & (travel < decisions.SLOW_COUNTS * step)
     forward = np.clip(_speed(lasts, np.diff(edge)) * h * np.sign(moved), 0.0, travel)
     found_y, found_r = y.copy(), r.copy()
     found_y[rows[sharp]] = (edge + 0.5 * forward * np.sign(moved))[sharp]

@@ -97,7 +97,7 @@ def _untold(t_s: Array) -> Array:
     """How long a command is unknown behind each row (n,): rows that are missing had commands of their own."""
     step = np.append(np.diff(t_s), 0.0)
     usual = float(np.median(step[:-1])) if len(step) > 1 else 0.0
-    return np.where(step > decisions.MISSING_STEP * usual, step - usual, 0.0)
+    return np.where(step > decisions.MORE_THAN_ONE * usual, step - usual, 0.0)
 
 
 def _standing(y: Array) -> Array:

@@ -52,7 +52,7 @@ def grid_evidence(y: Array, grid: float, step: float) -> float:
     """Log likelihood, by (1), that changes of the readings y (n,) gain from lying on a grid instead of anywhere; 0 where they do not."""
     counts = _counts(y, step)
     counts, times = np.unique(counts[1:][np.diff(counts) != 0], return_counts=True)
-    if len(counts) == 0 or grid <= decisions.COARSE_STEP * step:
+    if len(counts) == 0 or grid <= decisions.MORE_THAN_ONE * step:
         return 0.0
     found = _evidence(counts, times, step / grid)
     return found if _lies(found / times.sum(), len(counts), int(np.ptp(counts)) + 1, step / grid) else 0.0
@@ -107,7 +107,7 @@ def _peaks(counts: Counts, times: Counts, unit: int) -> list[float]:
     lowest = [place for place in inner if height[place] > NEARLY_AS_HIGH * height[ranked[0]]][:1]
     highest = np.array([*lowest, *ranked[:PEAKS]]) / points
     both = [f for peak in highest for f in (peak, 1.0 - peak)] if unit == 1 else highest.tolist()
-    return [float(f) for f in both if f * decisions.COARSE_STEP < 1.0]
+    return [float(f) for f in both if f * decisions.MORE_THAN_ONE < 1.0]
 
 
 def _near(counts: Counts, times: Counts, peak: float, unit: int) -> float:

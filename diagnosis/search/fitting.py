@@ -213,7 +213,7 @@ def _whole_counts(case: Case, found: Fit) -> bool:
         jump = effect.having(Role.JUMP)
         if jump is not None:
             sensor = library.bound.model.places.sensors[effect.place].output
-            if abs(values[jump.symbol]) < decisions.LEAST_SLIP * library.bound.plant.sensors[sensor]:
+            if abs(values[jump.symbol]) < decisions.MORE_THAN_ONE * library.bound.plant.sensors[sensor]:
                 return False
     return True
 

@@ -100,7 +100,7 @@ def _yielded(case: Case, found: Fit) -> Hypothesis | None:
         ways = list(_unstated(case, found.hypothesis, axis))
         if ways:
             fitted, reached = _likeliest(case, hypothesis, ways, value)
-            if reached > value + decisions.LEAST_YIELDING_GAIN:
+            if reached > value + decisions.FAR_LIKELIER:
                 hypothesis, value = fitted, reached
     return hypothesis if value > found.log_likelihood else None
 
