@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
-from diagnosis.decide.consequence import foreseen, foreseen_rules
+from diagnosis.decide.consequence import foreseen, foreseen_rules, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of
 from diagnosis.decide.rows import EARLY, LATE, demand_rows, rows_in_doubt
@@ -201,8 +201,9 @@ def _ranked(
     """What was found, ranked; `known` is a hold-out that was made before."""
     tried = _tried(seen, found, beyond)
     ahead = foreseen(logs, tried)
+    tried, idle = without_idle(tried, ahead)
     weighed = weigh(tried, ahead)
-    seen = seen.because(*found.decisions, *foreseen_rules(ahead, weighed))
+    seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     if holdout is None or not weighed.fitted:
         return _Ranked(seen.because(*weighed.decisions), weighed, holdout)

@@ -1,13 +1,14 @@
 """Whether a gap matters, and what a name predicts better: some thousand rows make any small thing certain, and what changes no prediction
 is nothing to an engineer."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.weighing import Tried, Weighed
+from diagnosis.decide.weighing import Tried, Weighed, beyond_spread
 from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
@@ -51,6 +52,39 @@ def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
     plain, seconds = tried.nominal.fit.hypothesis, logs.seconds
     gains = thread_map(lambda entry: logs.gain(entry.fit.hypothesis, plain), asked)
     return {entry: seconds * gain for entry, gain in zip(asked, gains, strict=True)}
+
+
+def without_idle(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> tuple[Tried, tuple[Decision, ...]]:
+    """What was tried, without hypotheses one of whose effects makes predictions worse than the likeliest without it has them; and the
+    rules. What parameters beyond their spread cost counts: where these leave it to take an effect's part, it is not idle."""
+    told = [
+        (entry, fewer) for entry in tried.named if entry in ahead and (fewer := _one_less(entry, ahead)) is not None
+    ]
+    worth = {entry: nats - beyond_spread(entry) for entry, nats in ahead.items()}
+    idle = [(entry, fewer) for entry, fewer in told if worth[entry] < worth[fewer]]
+    rules = tuple(
+        held_against(
+            "each_matters",
+            " + ".join(entry.effects),
+            worth[entry],
+            worth[fewer],
+            "nats",
+            f"{' + '.join(sorted(set(entry.effects) - set(fewer.effects)))} is left out",
+        )
+        for entry, fewer in idle
+    )
+    gone = {entry for entry, _ in idle}
+    return replace(tried, named=tuple(entry for entry in tried.named if entry not in gone)), rules
+
+
+def _one_less(entry: FittedHypothesis, asked: Iterable[FittedHypothesis]) -> FittedHypothesis | None:
+    """The likeliest of what was asked with all effects but one of it; None of a single effect."""
+    fewer = [
+        other
+        for other in asked
+        if len(other.effects) == len(entry.effects) - 1 > 0 and set(other.effects) < set(entry.effects)
+    ]
+    return max(fewer, key=lambda other: other.evidence, default=None)
 
 
 def foreseen_rules(foretold: Mapping[FittedHypothesis, float], weighed: Weighed) -> tuple[Decision, ...]:

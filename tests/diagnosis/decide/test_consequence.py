@@ -1,10 +1,12 @@
 """A gap matters by what its explanation predicts, not by how certain many rows make it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.consequence import consequence, foreseen, foreseen_rules
+from diagnosis.decide.consequence import consequence, foreseen, foreseen_rules, without_idle
 from diagnosis.decide.weighing import Tried, Weighed
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
@@ -78,6 +80,35 @@ def test_a_second_effect_predicts_what_the_first_leaves() -> None:
     weighed = Weighed((both, alone), (0.6, 0.01), 0.39, 0.0, 1.0)
     (rule,) = foreseen_rules(found, weighed)  # what is unlikely is not told
     assert (rule.of, rule.value) == ("arm.coulomb + arm.offset_force", pytest.approx(found[both]))
+
+
+def test_an_effect_beside_which_the_logs_are_predicted_worse_is_left_out() -> None:
+    # Truth: dry friction alone. A scale of the sensor that is a tenth off predicts worse, whatever evidence it be said to have; beside it
+    # the friction is not idle, as nothing else was tried with one effect less.
+    rub = {"arm.coulomb": {"b": 4e-4}}
+    case = arm_case(arm_log(rub, seed=76))
+    alone, plain = settled(case, rub), settled(case, {})
+    wrong = alone.fit.hypothesis.with_effects({**rub, "theta_sensor.scale": {"scale": 1.1}})
+    both = FittedHypothesis(("arm.coulomb", "theta_sensor.scale"), replace(alone.fit, hypothesis=wrong), 1e6)
+    tried = Tried((both, alone), plain, case.library, 5.0)
+    ahead = foreseen(FittedLogs(case), tried)
+    found, (rule,) = without_idle(tried, ahead)
+    assert found.named == (alone,)
+    assert (rule.of, rule.outcome) == ("arm.coulomb + theta_sensor.scale", "theta_sensor.scale is left out")
+    assert without_idle(replace(tried, named=(both,)), {both: ahead[both]})[0].named == (both,)
+
+
+def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_idle() -> None:
+    # Truth by hand: without the second effect a parameter stands nine standard deviations from its file, six beyond what is free: 18 nats.
+    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
+    case = arm_case(arm_log({**rub, **pull}, seed=76))
+    both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
+    theta = alone.fit.hypothesis.theta.copy()
+    theta[0] = 9.0
+    bent = replace(alone, fit=replace(alone.fit, hypothesis=replace(alone.fit.hypothesis, theta=theta)))
+    for nats, kept in ((17.0, (both, bent)), (19.0, (bent,))):
+        tried = Tried((both, bent), plain, case.library, 5.0)
+        assert without_idle(tried, {both: 40.0, bent: 40.0 + nats})[0].named == kept
 
 
 @pytest.mark.parametrize("moved", [False, True])
