@@ -42,32 +42,36 @@ def consequence(
 
 
 def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
-    """Nats by which the likeliest of what was tried, and parameters beyond their spread, predict the logs better than the plant alone, over
-    horizons from a row to a second (validate/score.py): a reading for each second, as those within share their errors.
+    """Nats by which the likeliest of what was tried, the same with one effect less, and parameters beyond their spread predict the logs
+    better than the plant alone, over horizons from a row to a second (validate/score.py): a reading for each second, as those within share
+    their errors.
 
     What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off.
     """
     asked = sorted(tried.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
-    asked += [] if tried.beyond is None else [tried.beyond]
+    fewer = [other for entry in asked if (other := _one_less(entry, tried.named)) is not None]
+    asked = list(dict.fromkeys([*asked, *fewer, *([] if tried.beyond is None else [tried.beyond])]))
     plain, seconds = tried.nominal.fit.hypothesis, logs.seconds
     gains = thread_map(lambda entry: logs.gain(entry.fit.hypothesis, plain), asked)
     return {entry: seconds * gain for entry, gain in zip(asked, gains, strict=True)}
 
 
 def without_idle(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> tuple[Tried, tuple[Decision, ...]]:
-    """What was tried, without hypotheses one of whose effects makes predictions worse than the likeliest without it has them; and the
-    rules. What parameters beyond their spread cost counts: where these leave it to take an effect's part, it is not idle."""
+    """What was tried, without hypotheses one of whose effects does less than FORMS_OFF of what they predict better, beside the likeliest
+    without it; and the rules. What parameters beyond their spread cost counts: where these leave it to take an effect's part, it is not
+    idle."""
     told = [
         (entry, fewer) for entry in tried.named if entry in ahead and (fewer := _one_less(entry, ahead)) is not None
     ]
-    worth = {entry: nats - beyond_spread(entry) for entry, nats in ahead.items()}
-    idle = [(entry, fewer) for entry, fewer in told if worth[entry] < worth[fewer]]
+    gains = {entry: ahead[entry] - beyond_spread(entry) - ahead[fewer] + beyond_spread(fewer) for entry, fewer in told}
+    least = {entry: float(decisions.FORMS_OFF) * max(ahead[entry], 0.0) for entry, _ in told}
+    idle = [(entry, fewer) for entry, fewer in told if gains[entry] < least[entry]]
     rules = tuple(
         held_against(
             "each_matters",
             " + ".join(entry.effects),
-            worth[entry],
-            worth[fewer],
+            gains[entry],
+            least[entry],
             "nats",
             f"{' + '.join(sorted(set(entry.effects) - set(fewer.effects)))} is left out",
         )
