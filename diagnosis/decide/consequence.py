@@ -46,7 +46,8 @@ def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
     better than the plant alone, over horizons from a row to a second (validate/score.py): a reading for each second, as those within share
     their errors.
 
-    What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off.
+    What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off. Those with
+    less evidence than the MOST_FORESEEN most evident are not asked.
     """
     asked = sorted(tried.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
     fewer = [other for entry in asked if (other := _one_less(entry, tried.named)) is not None]

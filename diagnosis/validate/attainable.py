@@ -32,8 +32,11 @@ NO_PUSH: Push = (0.0, 1.0)
 
 
 def attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis, horizons_s: Sequence[float]) -> Array:
-    """Mean squares (horizons, outputs) at the middle of each horizon, which ends at one of `horizons_s` and begins at the last one's
-    end."""
+    """Mean squares (horizons, outputs), in squares of the outputs' units, at the middle of each horizon, which ends at one of `horizons_s`
+    and begins at the last one's end.
+
+    Every axis is taken as free, with the inertia that it has where the log begins: one that springs or brakes could be predicted better.
+    """
     library, model = case.library, case.library.bound.model
     tau = 0.5 * (np.append(0.0, horizons_s[:-1]) + np.array(horizons_s))
     axes = {str(axis.position): place for place, axis in enumerate(model.axes)}
@@ -57,7 +60,11 @@ def attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis, horizons
 
 
 def of_an_axis(q: float, push: Push, R: float, tau: Array) -> Array:
-    """The variance of where an axis is `tau` ahead: of what a filter knows, and of what noise does until then."""
+    """The variance (k,), in rad^2, of where an axis is `tau` (k,) s ahead: of what a filter knows, and of what noise does until then.
+
+    `q` is white noise on its speed in rad^2/s^3, `push` in rad/s^2 and s, `R` the variance of readings times their spacing in rad^2 s, more
+    than 0; of an axis that slides, m in place of rad.
+    """
     s, T = push
     theta = tau / T
     m = theta + np.expm1(-theta)
@@ -92,7 +99,7 @@ def _push(case: Case, flight: FilteredLog, hypothesis: Hypothesis, axis: int) ->
 
 
 def coarse_steps(case: Case, hypothesis: Hypothesis) -> Mapping[str, float]:
-    """The steps of the sensors that a hypothesis takes to be coarse, by output."""
+    """The steps of the sensors that a hypothesis takes to be coarse, by output, in its unit."""
     effects, sensors = case.library.effects, case.library.bound.model.places.sensors
     return {
         sensors[effects[name].place].output: values[effects[name].symbol(Role.STEP)]

@@ -82,12 +82,14 @@ def test_names_that_the_logs_hardly_tell_apart_are_alike() -> None:
 
 
 def test_the_learned_law_says_what_such_a_law_must() -> None:
-    """Truth: more left is likelier unknown, what predicts better is likelier, further effects cost; ten numbers."""
+    """Truth: more left is likelier unknown, what predicts better is likelier, further effects cost, a part of several is oftener right;
+    ten numbers."""
     law = learned()
     assert law.left <= 0.0 <= law.favour
     assert law.gain >= 0.0
     assert law.further > 0.0
     assert law.ahead > 0.0
+    assert 0.0 < law.partly_single < law.partly_several < 1.0
     assert len(fields(law)) <= 10
 
 
