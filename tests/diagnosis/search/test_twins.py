@@ -2,16 +2,18 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed, first_share
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.foretold import foretold_nats
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.search.beam import Search, beam_of, with_twins
 from diagnosis.search.draughts import hardly_told, with_noise_beside, with_noise_of
 from diagnosis.search.exchange import fit_twins, is_twin, twins_of
@@ -157,6 +159,19 @@ def test_noise_is_not_sought_beside_what_it_cannot_bring_near_the_best(late: Cas
     drive = supposed(late, LAG)
     hopeless = replace(supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), evidence=drive.evidence - 1e5)
     assert [entry.effects for entry in with_noise_beside(late, [drive, hopeless])] == [drive.effects]
+
+
+def test_noise_is_sought_beside_what_it_could_bring_near_as_parameters_come_back(late: Case) -> None:
+    # Truth: the same lag. What innovations foretell is a third of what noise may gain: at twice that short it is asked, at four times not.
+    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    (noisy,) = with_noise_beside(late, [sensor])
+    runs = [passes(late, entry.fit.hypothesis) for entry in (drive, noisy)]
+    promised = float(np.subtract(*(foretold_nats(run) for run in runs if run is not None)))
+    assert promised > decisions.NEAR_BEST
+    for short, asked in ((2.0, True), (4.0, False)):
+        entry = replace(drive, evidence=noisy.evidence - short * promised - decisions.NEAR_BEST)
+        found = {one.effects for one in with_noise_beside(late, [sensor, entry])}
+        assert (drive.effects in found) is asked
 
 
 def test_the_share_of_a_name_is_that_of_what_is_hardly_told_from_it_too(late: Case) -> None:
