@@ -28,7 +28,7 @@ from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
 from diagnosis.seeing import alarmed, alone_of, beside_noise, detected, seen_of
-from diagnosis.standing import borne_out, confirmed_by, of_consequence
+from diagnosis.standing import confirmed_by, of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
 from records.reasons import Note
@@ -50,9 +50,6 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if not alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.UNEXPLAINED)
     seen, judged = _judged(seen, material, found, beyond)
-    seen, stands = borne_out(seen, judged.weighed)
-    if not stands:
-        return _nothing(seen, replace(material, notes=judged.notes), Exit.NOT_BORNE_OUT, judged.holdout)
     seen, matters = of_consequence(seen, judged)
     if not matters:
         return _nothing(seen, replace(material, notes=judged.notes), Exit.TOO_SMALL, judged.holdout)

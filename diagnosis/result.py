@@ -33,7 +33,6 @@ class Exit(Enum):
     TOO_LITTLE_SEEN = "too_little_seen"  # they are, and most of the library would not show in them
     YIELDING_EXPLAINS = "yielding_explains"  # axes that creep or give near rest, which is no gap, leave none
     UNEXPLAINED = "unexplained"  # a small gap that neither an effect of sure size nor parameters explain
-    NOT_BORNE_OUT = "not_borne_out"  # a small gap that is not sure and whose explanations do not hold
     TOO_SMALL = "too_small"  # a gap whose explanations change no prediction by enough to matter
     EFFECT_ADDED = "effect_added"
     PARAMETERS_ALONE = "parameters_alone"

@@ -1,18 +1,18 @@
-"""Whether a gap that was explained stands: what explains it must be likely enough, hold on logs that were not fitted, and matter."""
+"""Whether a gap stands: a small one must be explained by evidence, and what explains any must predict better."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.decide.consequence import consequence
 from diagnosis.decide.holdout import surely_better
-from diagnosis.decide.weighing import Weighed
+from diagnosis.decide.weighing import named
 from diagnosis.decisions import decided, held_against
 from diagnosis.result import Judged, Seen
 from diagnosis.search.beam import Search
 from diagnosis.search.retune import Retune
 from diagnosis.seeing import false_alarm
+from diagnosis.validate.fitted_logs import FittedLogs
 
 
 def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
@@ -33,30 +33,20 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
 
 
 def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
-    """Whether anything that was found changes what a model predicts, of the logs or surely of those that were not fitted.
+    """Whether what explains a gap predicts the logs better than the plain plant with its parameters moved: by what matters, and a small gap
+    by more than chance, as a gain of x nats has a chance of exp(-x) at most; or surely those that were not fitted.
 
-    It is asked against the plain plant with its parameters moved; one that had to move them further than its file allows is no plant that
-    is as stated, however well it then predicts.
+    A plant that had to move its parameters further than its file allows is none that is as stated, however well it then predicts.
     """
-    weighed = judged.weighed
-    if seen.detection.moved or weighed.retune > max(weighed.probabilities, default=0.0):
+    small, ahead_nats = seen.detection.largest <= decisions.PLAIN_TO_SEE, judged.weighed.ahead_nats
+    if seen.detection.moved or (ahead_nats is None and not small):
         return seen, True
-    tried, shares = list(weighed.fitted), list(weighed.probabilities)
-    if judged.beyond is not None:
-        tried, shares = [*tried, judged.beyond.fitted], [*shares, weighed.retune]
-    rules = consequence(seen.case, seen.retuned, tried, shares)
-    if all(rule.value is None or rule.value >= decisions.MATTERS for rule in rules):
-        return seen.because(*rules), True
-    surely, told = (False, ()) if judged.holdout is None else surely_better(judged.holdout, weighed.fitted)
-    return seen.because(*rules, *told), surely
-
-
-def borne_out(seen: Seen, weighed: Weighed) -> tuple[Seen, bool]:
-    """Whether a gap stands: a small one that is not sure does not whose explanations do not hold, be it on the hold-out; a name that may
-    be right in part is none for it. Its chance stays what it is."""
-    unsure = seen.detection.largest <= decisions.PLAIN_TO_SEE and seen.detection.p > decisions.SURE_GAP
-    named, against = max(weighed.retune, *weighed.probabilities, 0.0), weighed.unknown + weighed.partly
-    stands = not (unsure and against > named)
-    outcome = "no gap: nothing that was found holds" if not stands else "stands"
-    rule = held_against("borne_out", "what explains it", named, against, "probability", outcome)
-    return (seen.because(rule) if unsure else seen), stands
+    least = float(decisions.MATTERS) * FittedLogs(seen.case).seconds
+    least = max(least, -float(np.log(decisions.ALARM))) if small else least
+    matters = ahead_nats is not None and ahead_nats >= least
+    outcome = "matters" if matters else "no gap: too small to matter"
+    rule = held_against("matters", named(judged.weighed), ahead_nats or 0.0, least, "nats", outcome)
+    surely, told = (
+        (matters, ()) if matters or judged.holdout is None else surely_better(judged.holdout, judged.weighed.fitted)
+    )
+    return seen.because(rule, *told), surely

@@ -1,44 +1,18 @@
-"""Whether a gap matters, and what a name predicts better: some thousand rows make any small thing certain, and what changes no prediction
-is nothing to an engineer."""
+"""What a name predicts better: some thousand rows make any small thing certain, what changes no prediction is nothing to an engineer."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-
-import numpy as np
-from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.weighing import Tried, Weighed, beyond_spread
-from diagnosis.decisions import decided, held_against
+from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.hypothesis.case import Case
 from diagnosis.validate.fitted_logs import FittedLogs
-from diagnosis.validate.score import score
 from jobs.thread_map import thread_map
 from records.reasons import Decision
 
-Array = NDArray[np.float64]
-ASKED = 3  # of the most probable explanations
 MOST_FORESEEN = 16  # explanations, by evidence: of 58 right names one had a lower rank
 TOLD_FROM = 0.02  # probability: of less probable ones no rule is told
-LEAST_WEIGHT = 1e-6  # where the unknown is all, its rivals count alike
-
-
-def consequence(
-    case: Case, plain: FittedHypothesis, tried: Sequence[FittedHypothesis], shares: Sequence[float]
-) -> tuple[Decision, ...]:
-    """The rule that asks by how many nats a reading what was `tried` predicts the logs that it was fitted to better than the `plain` plant
-    (validate/score.py), in the mean by their probabilities `shares`; none where nothing was tried."""
-    asked = sorted(zip(shares, tried, strict=True), key=lambda entry: -entry[0])[:ASKED]
-    if not asked:
-        return ()
-    logs = FittedLogs(case)
-    own, *others = thread_map(lambda entry: logs.errors(entry.fit.hypothesis), [plain, *(entry for _, entry in asked)])
-    weights = [max(share, LEAST_WEIGHT) for share, _ in asked]
-    gain = float(np.average([score(other, own).gain for other in others], weights=weights))
-    of = " + ".join(asked[0][1].effects) or "parameters"
-    outcome = "matters" if gain >= decisions.MATTERS else "no gap: too small to matter"
-    return (decided("matters", of, gain, decisions.MATTERS, outcome),)
 
 
 def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:

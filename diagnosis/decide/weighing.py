@@ -7,6 +7,7 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.prior import prior_odds
@@ -18,6 +19,7 @@ from diagnosis.search.exchange import is_twin
 from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, law_of, likeliest_of
 from records.reasons import Decision
 
+Array = NDArray[np.float64]
 RANKED = 12  # hypotheses that are told of
 
 
@@ -25,7 +27,8 @@ RANKED = 12  # hypotheses that are told of
 class Weighed:
     """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; that of
     parameters beyond their spread; the scale in nats on which hypotheses are compared; that of the first some effects are right and others
-    not; and the comparison that all these follow from."""
+    not; the comparison that all these follow from; and the nats by which what explains predicts the logs better than the plant alone, in
+    the mean by its shares (None: nothing was tried)."""
 
     fitted: tuple[FittedHypothesis, ...]
     probabilities: tuple[float, ...]
@@ -35,6 +38,7 @@ class Weighed:
     decisions: tuple[Decision, ...] = ()
     partly: float = 0.0
     comparison: ModelComparison | None = None
+    ahead_nats: float | None = None
 
     @property
     def nameless(self) -> bool:
@@ -99,7 +103,14 @@ def weigh(
         _rules(told, first, scale, explained),
         partly,
         told,
+        _foretold(told, shares),
     )
+
+
+def _foretold(told: ModelComparison, shares: Array) -> float | None:
+    """What explains predicts better, in the mean by its shares; None where nothing explains."""
+    ahead = [*(one.ahead_nats for one in told.candidates), told.parameters_ahead_nats]
+    return float(np.dot(shares, ahead)) if shares.any() else None
 
 
 def _comparison(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> ModelComparison:

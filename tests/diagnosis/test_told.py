@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis import decisions
 from diagnosis.answer import no_gap
 from diagnosis.baselines.bic import by_bic
 from diagnosis.baselines.residual_size import by_residual_size
@@ -18,9 +19,9 @@ from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
-from diagnosis.result import Exit, Material, Seen
+from diagnosis.result import Exit, Judged, Material, Seen
 from diagnosis.search.retune import places_of, retune
-from diagnosis.standing import borne_out
+from diagnosis.standing import of_consequence
 from diagnosis.validate.prediction import predictions
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.reasons import Note
@@ -115,8 +116,8 @@ def seen() -> Seen:
 
 def test_an_answer_without_a_gap_names_its_exit_and_keeps_notes_rules_and_chance() -> None:
     kept = Note("firmware", "log", {}, "log: something")
-    found = no_gap(seen(), Material([], [], [], [], notes=(kept,)), None, Exit.NOT_BORNE_OUT).diagnosis
-    assert (found.verdict, found.verdict_reason) == ("no gap", "not_borne_out")
+    found = no_gap(seen(), Material([], [], [], [], notes=(kept,)), None, Exit.TOO_SMALL).diagnosis
+    assert (found.verdict, found.verdict_reason) == ("no gap", "too_small")
     assert found.note_records[0] == kept
     assert found.notes[0] == "log: something"
     assert found.false_alarm_probability == seen().detection.p
@@ -124,15 +125,15 @@ def test_an_answer_without_a_gap_names_its_exit_and_keeps_notes_rules_and_chance
 
 def test_a_small_gap_that_nothing_explains_does_not_stand_and_keeps_its_chance() -> None:
     small = seen()
-    small = replace(small, detection=replace(small.detection, p=4e-5, largest=30.0))
-    after, stands = borne_out(small, Weighed((), (), 0.66, 0.34, 10.0))
+    small = replace(small, detection=replace(small.detection, p=4e-5, largest=30.0, moved=False))
+    weighed = Weighed((), (), 0.66, 0.34, 10.0, ahead_nats=3.0)
+    result = Judged(object(), None, weighed, small.retuned, None, ())  # type: ignore[arg-type]
+    after, stands = of_consequence(small, result)
     assert not stands
     assert after.detection.p == 4e-5
-    assert after.decisions[-1].rule == "borne_out"
-    assert (after.decisions[-1].value, after.decisions[-1].limit) == (0.34, 0.66)
-    assert borne_out(small, Weighed((), (), 0.2, 0.8, 10.0))[1]
-    sure = replace(small, detection=replace(small.detection, p=4e-13))
-    assert borne_out(sure, Weighed((), (), 0.66, 0.34, 10.0))[1]
+    assert after.decisions[-1].rule == "matters"
+    assert after.decisions[-1].value == 3.0
+    assert after.decisions[-1].limit == pytest.approx(-np.log(decisions.ALARM))
 
 
 ROUGH = {"arm.coulomb": {"b": 5e-4}}

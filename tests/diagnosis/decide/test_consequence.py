@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.consequence import consequence, foreseen, foreseen_rules, without_idle
-from diagnosis.decide.weighing import Tried, Weighed
+from diagnosis.decide.consequence import foreseen, foreseen_rules, without_idle
+from diagnosis.decide.weighing import Tried, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
@@ -29,24 +29,55 @@ def explained(case: Case, plain: FittedHypothesis, effect: str, values: dict[str
     return as_fitted(case, found)
 
 
+def seen(case: Case, plain: FittedHypothesis, largest: float = 100.0, moved: bool = False) -> Seen:
+    """A gap of so many nats."""
+    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+    detection = Detection(1e-9, Tail(5.0, 1.0), largest, moved, FormScores((), empty, np.zeros(0)))
+    return Seen(case, None, plain, object(), (), None, detection)  # type: ignore[arg-type]
+
+
+def judged(found: FittedHypothesis | None, ahead_nats: float | None) -> Judged:
+    """What is made of a gap that one hypothesis, or nothing, explains."""
+    weighed = Weighed(() if found is None else (found,), (0.9,), 0.1, 0.0, 10.0, ahead_nats=ahead_nats)
+    return Judged(object(), None, weighed, found, None, ())  # type: ignore[arg-type]
+
+
+def weighed_of(case: Case, plain: FittedHypothesis, found: FittedHypothesis) -> Weighed:
+    tried = Tried((found,), plain, case.library, 5.0)
+    return weigh(tried, foreseen(FittedLogs(case), tried))
+
+
 def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not() -> None:
     # Truth: 0.4 mN m of dry friction, which moves a prediction by many counts; the arm reads 1 ms late, a fifth of a count in usual motion.
-    gains = []
-    for effect, values in (("arm.coulomb", {"b": 4e-4}), ("theta_sensor.delay", {"tau": 1e-3, "jitter": 0.0})):
+    for effect, values, matters in (
+        ("arm.coulomb", {"b": 4e-4}, True),
+        ("theta_sensor.delay", {"tau": 1e-3, "jitter": 0.0}, False),
+    ):
         case = arm_case(arm_log({effect: values}, seed=76))
         plain = as_fitted(case, nominal_fit(case))
-        (rule,) = consequence(case, plain, [explained(case, plain, effect, values)], [1.0])
-        gains.append(rule.value)
-        assert rule.of == effect
-    assert gains[0] is not None
-    assert gains[1] is not None
-    assert gains[0] > 0.3
-    assert gains[1] < 0.05
+        found = explained(case, plain, effect, values)
+        weighed = weighed_of(case, plain, found)
+        assert weighed.ahead_nats is not None
+        assert (weighed.ahead_nats > 0.3 * FittedLogs(case).seconds) is matters
+        result = replace(judged(found, None), weighed=weighed)
+        after, stands = of_consequence(seen(case, plain), result)
+        assert stands is matters
+        assert (after.decisions[-1].rule, after.decisions[-1].of) == ("matters", effect)
 
 
-def test_what_was_not_tried_is_not_asked() -> None:
-    case = arm_case(arm_log(seed=76))
-    assert consequence(case, as_fitted(case, nominal_fit(case)), [], []) == ()
+@pytest.mark.parametrize(
+    ("largest", "ahead_nats", "stands"),
+    [(20.0, 5.0, False), (20.0, 10.0, True), (20.0, None, False), (200.0, 5.0, True), (200.0, None, True)],
+)
+def test_a_small_gap_needs_predictions_that_are_better_than_chance(
+    largest: float, ahead_nats: float | None, stands: bool
+) -> None:
+    # Truth by hand: 5 nats have a chance of exp(-5) = 7e-3 without a gap, 10 nats one of 5e-5; a gap may stand at 1e-3. A large gap needs
+    # what matters, 0.04 nats a second of some ten seconds; where nothing explains one it stands, as that of an unknown effect.
+    case = arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=76))
+    plain = as_fitted(case, nominal_fit(case))
+    found = None if ahead_nats is None else plain
+    assert of_consequence(seen(case, plain, largest), judged(found, ahead_nats))[1] is stands
 
 
 def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
@@ -119,9 +150,5 @@ def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_fil
     case = arm_case(arm_log({"theta_sensor.delay": values}, seed=76))
     plain = as_fitted(case, nominal_fit(case))
     late = explained(case, plain, "theta_sensor.delay", values)
-    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
-    detection = Detection(1e-9, Tail(5.0, 1.0), 100.0, moved, FormScores((), empty, np.zeros(0)))
-    seen = Seen(case, None, plain, object(), (), None, detection)  # type: ignore[arg-type]
-    weighed = Weighed((late,), (0.9,), 0.1, 0.0, 10.0)
-    judged = Judged(object(), None, weighed, late, None, ())  # type: ignore[arg-type]
-    assert of_consequence(seen, judged)[1] is moved
+    result = replace(judged(late, None), weighed=weighed_of(case, plain, late))
+    assert of_consequence(seen(case, plain, moved=moved), result)[1] is moved

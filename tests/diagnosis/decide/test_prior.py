@@ -8,7 +8,7 @@ import pytest
 
 from blind.calibration.fit import UNLEARNED
 from diagnosis.decide import prior
-from diagnosis.decide.weighing import Tried, Weighed, weigh
+from diagnosis.decide.weighing import Tried, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
@@ -18,7 +18,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Seen
 from diagnosis.search.beam import Search
-from diagnosis.standing import borne_out, confirmed_by
+from diagnosis.standing import confirmed_by
 from sim.added_effects import every_effect
 from sim.effect import EffectParameter
 from tests.plants import bound
@@ -117,21 +117,6 @@ def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, sure:
         (fitted(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, sure, linearisation, ()
     )  # type: ignore[arg-type]
     assert (confirmed_by(seen(largest), found, None).detection.p <= 0.01) is gap
-
-
-@pytest.mark.parametrize(
-    ("largest", "unknown", "partly", "gap"),
-    [(20.0, 0.95, 0.0, False), (20.0, 0.3, 0.0, True), (20.0, 0.1, 0.5, False), (200.0, 0.95, 0.0, True)],
-)
-def test_what_explains_a_small_gap_must_be_likelier_than_nothing(
-    largest: float, unknown: float, partly: float, gap: bool
-) -> None:
-    # Where the hold-out refutes the one explanation that there was, as with unknown = 0.95, nothing explains the gap; nor does one that
-    # is rather right in part.
-    weighed = Weighed((fitted(12.0),), (1.0 - unknown - partly,), unknown, 0.0, 10.0, partly=partly)
-    after, stands = borne_out(seen(largest), weighed)
-    assert stands is gap
-    assert after.detection.p == seen(largest).detection.p  # whatever the verdict, the chance stays what it is
 
 
 @pytest.mark.parametrize(("first", "second_counts"), [("psi_sensor.quantization", True), ("main_input.lag", False)])

@@ -408,14 +408,14 @@ def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> Non
 
 RULES = (
     Decision("false_alarm", "logs", 4e-13, 0.01, "probability", "a cause is looked for"),
-    Decision("borne_out", "what explains it", 0.23, 0.34, "probability", "no gap: nothing that was found holds"),
+    Decision("matters", "azimuth.coulomb", 0.23, 0.34, "nats", "no gap: too small to matter"),
 )
 
 
 def test_why_an_answer_is_what_it_is_shows_every_rule_in_order_on_page_and_terminal() -> None:
     traced = replace(WORDS, decisions=RULES, verdict_reason="effect_added")
     page, told = text_of(traced), why_text(traced)
-    assert page.index("Why this answer") < page.index("false alarm") < page.index("borne out")
+    assert page.index("Why this answer") < page.index("false alarm") < page.index("matters", page.index("false alarm"))
     assert told.startswith("gap: effect_added\n")
     for number in ("4e-13", "0.34", "a cause is looked for"):
         assert number in page
@@ -424,9 +424,9 @@ def test_why_an_answer_is_what_it_is_shows_every_rule_in_order_on_page_and_termi
 
 def test_a_gap_that_nothing_explains_keeps_its_chance_and_is_not_called_as_small_as_usual() -> None:
     # Truth: a chance of 4e-13 is not what a rig as stated shows, whatever the verdict.
-    small = Diagnosis("no gap", 4e-13, verdict_reason="not_borne_out", decisions=RULES)
+    small = Diagnosis("no gap", 4e-13, verdict_reason="too_small", decisions=RULES)
     page, told = text_of(small), summary_text(small)
     for text in (page, told):
         assert "as small as on a rig" not in text
-        assert "nothing that would explain it holds where it was checked" in text
+        assert "brings predictions over a second hardly closer" in text
         assert "below 1e-06" in text

@@ -7,7 +7,7 @@ from records.reasons import Decision
 from twinlaw.cli import console
 from twinlaw.pages.page import Section, Table
 
-SMALL = ("unexplained", "not_borne_out", "too_small")  # exits of a gap that is small and has no explanation that holds
+SMALL = ("unexplained", "too_small")  # exits of a gap that is small and has no explanation that holds
 HEADING = ("rule", "of", "value", "limit", "unit", "what followed")
 # By the word of an exit (diagnosis/result.py): what it means for who reads the answer.
 _REASONS = {
@@ -15,8 +15,7 @@ _REASONS = {
     "too_little_seen": "Most effects of the library would go unseen in these logs, so that nothing shows in them says little.",
     "yielding_explains": "Axes that creep or give near rest, as dry friction does, explain what looked like a gap.",
     "unexplained": "What remains is small, and neither an effect of sure size nor other parameters explain it.",
-    "not_borne_out": "What remains is small, and nothing that would explain it holds where it was checked.",
-    "too_small": "Something is missing, but too little to matter: with it predictions over a second come hardly closer.",
+    "too_small": "What would explain the rest brings predictions over a second hardly closer: nothing that matters is missing.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",
     "parameters_alone": "Other values of the plant's own parameters are the likeliest explanation.",
     "named_not_added": "The likeliest effect does not predict the hold-out logs better, so the model stays without it.",
