@@ -9,6 +9,7 @@ from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
+from diagnosis.detect.unlike import unlike
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
@@ -249,26 +250,25 @@ def certainties(fit: Fit) -> dict[str, float]:
 def _grown(
     case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], worth: frozenset[str]
 ) -> tuple[list[Job], frozenset[str]]:
-    """The best hypotheses, each with the further effects that promise most beside it, none where the first has none; and the effects that
-    are `worth` a costly score test beside others.
+    """The best hypotheses, each with the further effects that promise most beside it and beside one another, none where the first has none;
+    and the effects that are `worth` a costly score test beside others.
 
     Beside the best single effect all are asked: under a plant that lacks it others may show nothing.
     """
 
-    def asked(fitted: FittedHypothesis, worth: frozenset[str] | None) -> list[ScoreTest]:
-        return score_effects(case, linearised(case, fitted.fit), names, worth)
+    def asked(fitted: FittedHypothesis, worth: frozenset[str] | None) -> tuple[list[ScoreTest], list[Job]]:
+        linearisation = linearised(case, fitted.fit)
+        score_tests = score_effects(case, linearisation, names, worth)
+        promising = [entry for entry in score_tests if entry.gain > decisions.TAKEN_IN][: decisions.COSTLY_EFFECTS]
+        return score_tests, [Job(fitted.fit, entry) for entry in unlike(linearisation, promising, decisions.NEXT)]
 
     if not best:
         return [], worth
     single = len(best[0].effects) == 1
-    first = asked(best[0], None if single else worth)
-    worth = worth | _worth(first) if single else worth
-    others = thread_map(lambda fitted: asked(fitted, worth), best[1:])
-    jobs = [
-        _promising(fitted.fit, score_tests, decisions.TAKEN_IN)[: decisions.NEXT]
-        for fitted, score_tests in zip(best, (first, *others), strict=True)
-    ]
-    return ([job for own in jobs for job in own] if jobs[0] else []), worth
+    score_tests, first = asked(best[0], None if single else worth)
+    worth = worth | _worth(score_tests) if single else worth
+    others = thread_map(lambda fitted: asked(fitted, worth)[1], best[1:])
+    return ([job for own in (first, *others) for job in own] if first else []), worth
 
 
 def _fit_all(

@@ -11,7 +11,7 @@ from diagnosis.fit.foretold import foretold_nats
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, noise_on, passes
 from diagnosis.search.exchange import is_twin
 from diagnosis.validate.fitted_logs import FittedLogs
 from jobs.thread_map import thread_map
@@ -50,7 +50,8 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
     Where it does so beside the best, evidence under it is not to be compared with evidence without. The best of each number of effects is
-    asked, and of the others those that it could bring near that.
+    asked, of the others those that it could bring near that, and the likeliest of all once more without each of its effects: whether one
+    is needed is asked under one noise.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
     near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.NEAR_BEST)
@@ -60,7 +61,21 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
         return []
     sizes = sorted({len(entry.effects) for entry in fitted})
     groups = [[entry for entry in fitted if len(entry.effects) == size] for size in sizes]
-    return [entry for group in groups for entry in _noisy_of_a_size(case, group, best, first)]
+    found = [entry for group in groups for entry in _noisy_of_a_size(case, group, best, first)]
+    known, likeliest = {frozenset(entry.effects) for entry in found}, max(found, key=lambda entry: entry.evidence)
+    fewer = [
+        entry
+        for entry in fitted
+        if len(entry.effects) == len(likeliest.effects) - 1 and set(entry.effects) < set(likeliest.effects)
+    ]
+    asked = [entry for entry in fewer if frozenset(entry.effects) not in known]
+    return [*found, *_all_noisy(case, asked, first)]
+
+
+def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypothesis) -> list[FittedHypothesis]:
+    """Those asked with their noise, but for those in which it would be more than noise."""
+    found = thread_map(lambda entry: _own_noise(case, entry, first), asked)
+    return [entry for entry in found if entry is not None]
 
 
 def _noisy_of_a_size(
@@ -73,8 +88,7 @@ def _noisy_of_a_size(
     if noisy is None:
         return []
     others = _in_reach(case, own, noisy, [entry for entry in group if entry is not own])
-    found = thread_map(lambda entry: _own_noise(case, entry, first), others)
-    return [noisy, *(entry for entry in found if entry is not None)]
+    return [noisy, *_all_noisy(case, others, first)]
 
 
 def _own_noise(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> FittedHypothesis | None:
@@ -105,18 +119,28 @@ def _in_reach(
     case: Case, own: FittedHypothesis, noisy: FittedHypothesis, others: Sequence[FittedHypothesis]
 ) -> list[FittedHypothesis]:
     """Those of the others that noise with a memory could bring near the likeliest, `own`, which has become `noisy` with its own, those that
-    it could bring furthest. It gains what their innovations foretell, beyond what those of the likeliest do, which rounding leaves; and
-    more, as parameters that bent for want of it come back. Between twins noise decides: they are asked where they lack no more than it
-    gained."""
+    it could bring furthest: under the noise of that one, or under another that their innovations foretell. Between twins noise decides:
+    they are asked where they lack no more than it gained."""
     left, gained = _foretold(case, noisy), noisy.evidence - own.evidence
-    promised = thread_map(lambda entry: decisions.PARAMETERS_BACK * max(_foretold(case, entry) - left, 0.0), others)
-    reach = {entry: entry.evidence + gain for entry, gain in zip(others, promised, strict=True)}
+
+    def promised(entry: FittedHypothesis) -> float:
+        return entry.evidence + max(
+            _further(case, entry, noisy), decisions.PARAMETERS_BACK * (_foretold(case, entry) - left), 0.0
+        )
+
+    reach = dict(zip(others, thread_map(promised, others), strict=True))
     furthest = sorted(
         (entry for entry in others if reach[entry] >= noisy.evidence - decisions.NEAR_BEST),
         key=lambda entry: -reach[entry],
     )
     twins = [entry for entry in hardly_told(case, own, others) if own.evidence - entry.evidence <= gained]
     return list(dict.fromkeys([*furthest[: decisions.SETTLED_FITS], *twins]))
+
+
+def _further(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> float:
+    """What a hypothesis gains under the noise of another, to first order in all numbers, as they come back which bent for want of it."""
+    found = fit(case, as_noisy(case, fitted.fit.hypothesis, known.fit.hypothesis), rounds=0)
+    return 0.0 if found is None else found.log_posterior + found.promised - fitted.fit.log_posterior
 
 
 def hardly_told(case: Case, first: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:

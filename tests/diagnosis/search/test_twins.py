@@ -162,7 +162,23 @@ def test_noise_is_not_sought_beside_what_it_cannot_bring_near_the_best(late: Cas
 
 
 def test_noise_is_sought_beside_what_it_could_bring_near_as_parameters_come_back(late: Case) -> None:
-    # Truth: the same lag. What innovations foretell is a third of what noise may gain: at twice that short it is asked, at four times not.
+    # Truth: a fit says what friction gains under the noise of a sensor's lag, of which it is no twin. Short by half of that beyond what is
+    # near it is asked, by one and a half of it not.
+    sensor, rub = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, {"arm.coulomb": {"b": 4e-4}})
+    (noisy,) = with_noise_beside(late, [sensor])
+    (fitted,) = with_noise_of(late, [rub], noisy)
+    gain = fitted.evidence - rub.evidence
+    assert gain > decisions.NEAR_BEST
+    with decisions.changed("PARAMETERS_BACK", 0.0):  # whatever its own innovations foretell
+        for short, asked in ((0.5, True), (1.5, False)):
+            entry = replace(rub, evidence=noisy.evidence - short * gain - decisions.NEAR_BEST)
+            found = {one.effects for one in with_noise_beside(late, [sensor, entry])}
+            assert (rub.effects in found) is asked
+
+
+def test_noise_is_sought_beside_what_foretells_another_of_its_own(late: Case) -> None:
+    # Truth: a lag of the drive. What innovations foretell is a third of what noise may gain: at twice that short it is asked, at four times
+    # not.
     sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
     (noisy,) = with_noise_beside(late, [sensor])
     runs = [passes(late, entry.fit.hypothesis) for entry in (drive, noisy)]
