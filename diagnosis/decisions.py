@@ -95,7 +95,11 @@ GRID_SD = Limit(
 SIZE_SD = Limit(
     20.0, "references", "standard deviation of an effect's size before the data: an effect costs ln 20 nats"
 )
-SHAPE_COST = Limit(2.0, "nats", "a free shape, as if it were known to a seventh of its range")
+SHAPE_COST = Limit(
+    2.0,
+    "nats",
+    "a free shape, as if it were known to a seventh of its range; a further form of a class, with ln of the number of its forms",
+)
 TAKEN_IN = Limit(
     10.0,
     "nats",
@@ -177,7 +181,6 @@ LEAST_LEFT_SHARE = Limit(
     1e-4, "share of a signature", "one that the plant's coefficients imitate but for this has no score", DEVELOPMENT
 )
 REPLICAS = Count(48, "replicas", "two moments of a Gumbel law need no more", DEVELOPMENT)
-SEEN_SCORE = Limit(4.0, "standard deviations", "an effect at its reference size with a smaller score would go unseen")
 BLIND_SHARE = Limit(0.6, "share of the library", "with more of it unseen the data cannot tell")
 EVENT_GRID_S = Limit(0.3, "s", "spacing of the steps in time that are scored", DEVELOPMENT)
 LEAST_EVENT_STEPS = Count(4, "steps", "of a log shorter than a second: fewer tell no pulse from a step")
@@ -216,12 +219,16 @@ CLOSE_PAIR_SHARE = Limit(
     DEVELOPMENT,
 )
 LEAST_GAIN = Limit(4.0, "nats", "a score test below is not worth a fit")
-LEAST_SHARE = Limit(0.01, "share of the best score test", "nor is one below this")
 COSTLY_EFFECTS = Count(14, "effects", "worth a costly score test beside others", DEVELOPMENT)
 SETTLED_FITS = Count(
     5, "hypotheses", "fitted once more to their end: one not at its end loses to one with an idle effect", DEVELOPMENT
 )
-CERTAIN = Limit(3.5, "standard deviations", "an effect's size from zero, for it to be there", DEVELOPMENT)
+CERTAIN = Limit(
+    3.5,
+    "standard deviations",
+    "an effect's size from zero, for it to be there; one whose reference size would show with less would go unseen",
+    DEVELOPMENT,
+)
 LIKELY = Limit(
     1.5,
     "standard deviations",
@@ -242,7 +249,10 @@ NEAR_BEST = Limit(
     "pairs and triples of seeds 900006 and 900007",
 )
 NEARLY_AS_GOOD = Limit(
-    0.03, "share of its gain", "that they must promise", "pairs and triples of seeds 900006 and 900007"
+    0.03,
+    "share of the best's gain",
+    "that another must promise to be worth a fit, in its place or alone",
+    "pairs and triples of seeds 900006 and 900007",
 )
 ASTRAY = Limit(
     1.5,
@@ -286,10 +296,6 @@ PARAMETERS_BACK = Limit(
 )
 NO_NOISE_SHARE = Limit(0.02, "shares of the least start", "a smaller noise with a memory is none")
 RETUNE_WIDER = Limit(8.0, "factor", "by which the spreads of what had moved are taken wider")
-RETUNE_FAR = Limit(4.0, "standard deviations", "a parameter that went further is told as beyond its spread")
-RETUNE_PULLED = Limit(
-    2.5, "standard deviations", "by which the fit within the spread must have moved something", DEVELOPMENT
-)
 RETUNE_NATS = Limit(4.0, "nats", "that each parameter beyond its spread costs")
 RETUNE_MOST = Count(4, "parameters", "more are no re-tune")
 
@@ -304,10 +310,10 @@ ALIKE_SCALES = Limit(
 FREE_SPREAD = Limit(
     3.0,
     "standard deviations",
-    "a parameter within costs no more than its prior; what leaves it is told, and pays in full, as no form a little off makes that cheaper",
+    "a parameter within costs no more than its prior; what leaves it is told, and pays in full, as no form a little off makes that "
+    "cheaper; one that is pulled so far within the spread is tried beyond it",
     "EMPS, where a friction that falls with speed fits better with another friction fifteen of them from what is published",
 )
-NATS_PER_FORM = Limit(2.0, "nats", "that each further form of a class costs, with ln of the number of its forms")
 MOST_FORMS = Count(4, "forms", "of one class")
 SAME_PLACE = Limit(
     0.3, "factor", "a form at a hypothesis' own place is rather its own form, a little other", DEVELOPMENT

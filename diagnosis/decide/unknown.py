@@ -65,7 +65,7 @@ def class_gain(by_form: FormScores, members: Sequence[int]) -> float:
     gram = scores.gram[np.ix_(chosen, chosen)] * np.outer(unit, unit)
     score = scores.score[chosen] * unit
     usual = np.maximum(1.0, by_form.null_gain[chosen] / MEAN_GAIN)
-    cost, total = decisions.NATS_PER_FORM + float(np.log(len(members))), 0.0
+    cost, total = decisions.SHAPE_COST + float(np.log(len(members))), 0.0
     for _ in range(min(decisions.MOST_FORMS, len(chosen))):
         left = np.diag(gram)
         gains = np.where(left > LEAST_OWN_SHARE, 0.5 * score**2 / np.maximum(left, LEAST_OWN_SHARE), 0.0) / usual

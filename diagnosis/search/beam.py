@@ -75,7 +75,7 @@ def alone(
     found: dict[frozenset[str], FittedHypothesis] = {}
     if lossy is not None and case.library.losses is not None:
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
-    least = max(decisions.LEAST_GAIN, decisions.LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
+    least = max(decisions.LEAST_GAIN, decisions.NEARLY_AS_GOOD * score_tests[0].gain) if score_tests else 0.0
     jobs = _promising(nominal, score_tests, least)[: decisions.SINGLES]
     jobs += _promising(nominal, scored_as_stated(case, nominal), least)[: decisions.SINGLES]
     _fit_all(case, jobs, found, first)
