@@ -19,6 +19,7 @@ from records.reasons import Decision
 from sim.effect import Role
 
 STILL_ROUNDS = 6
+NOISY_ROUNDS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +74,23 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
 
 
 def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypothesis) -> list[FittedHypothesis]:
-    """Those asked with their noise, but for those in which it would be more than noise."""
-    found = thread_map(lambda entry: _own_noise(case, entry, first), asked)
-    return [entry for entry in found if entry is not None]
+    """Those asked, fitted under the noise of the first; with their own those that come near the likeliest by it, or by what their
+    innovations foretell, but for those in which it would be more than noise."""
+    begun = thread_map(lambda entry: _under_noise_of(case, entry, first), asked)
+    least = max(entry.evidence for entry in (first, *begun)) - decisions.NEAR_BEST
+    left = _foretold(case, first)
+
+    def settled(entry: FittedHypothesis, under: FittedHypothesis) -> FittedHypothesis | None:
+        further = decisions.PARAMETERS_BACK * max(_foretold(case, under) - left, 0.0)
+        return _own_noise(case, entry, first) if under.evidence + further >= least else under
+
+    return [entry for entry in thread_map(settled, asked, begun) if entry is not None]
+
+
+def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> FittedHypothesis:
+    """The hypothesis fitted under the noise of another as it is, or itself where that is no likelier."""
+    found = fit(case, as_noisy(case, fitted.fit.hypothesis, known.fit.hypothesis), rounds=NOISY_ROUNDS)
+    return max((fitted, *([] if found is None else [as_fitted(case, found)])), key=lambda entry: entry.evidence)
 
 
 def _noisy_of_a_size(
