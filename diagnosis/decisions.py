@@ -185,7 +185,6 @@ BLIND_SHARE = Limit(0.6, "share of the library", "with more of it unseen the dat
 EVENT_GRID_S = Limit(0.3, "s", "spacing of the steps in time that are scored", DEVELOPMENT)
 LEAST_EVENT_STEPS = Count(4, "steps", "of a log shorter than a second: fewer tell no pulse from a step")
 MOST_EVENT_STEPS = Count(200, "steps", "no more for long logs: time", DEVELOPMENT)
-EVENTS_APART_S = Limit(1.5, "s", "instants that are closer are one")
 NEAR_PERIODS = Limit(
     3.0, "periods", "a frequency nearer to the motion's own, over a whole log, would be drawn to it", "EMPS"
 )

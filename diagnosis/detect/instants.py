@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.detect.linearisation import Linearisation
+from diagnosis.detect.forward import forward, gain_of
+from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Role, Values
 
@@ -17,14 +18,10 @@ def instants(linearisation: Linearisation, effect: Effect) -> list[dict[str, flo
     if target is None or not effect.is_event:
         return []
     times_s, scores = linearisation.steps(target)
-    gram, score = scores.gram, scores.score
     symbol, lasts = effect.symbol(Role.INSTANT), effect.having(Role.DURATION)
     if lasts is not None:
-        return [{symbol: start, lasts.symbol: duration} for start, duration in _pulses(times_s, gram, score)]
-    power = score**2 / np.maximum(np.diag(gram), 1e-12)
-    power[_untold(times_s)] = 0.0  # there before readings count: no event in this log
-    found = [*_jumps(linearisation, target), *(float(times_s[index]) for index in _peaks(power))]
-    return [{symbol: instant} for instant in found]
+        return [{symbol: start, lasts.symbol: duration} for start, duration in _pulses(times_s, scores)]
+    return [{symbol: instant} for instant in (*_jumps(linearisation, target), *_edges(times_s, scores))]
 
 
 def happens(effect: Effect, values: Values) -> bool:
@@ -46,38 +43,42 @@ def _jumps(linearisation: Linearisation, target: int) -> list[float]:
     return [max(found)[1]]
 
 
-def _pulses(times_s: Array, gram: Array, score: Array) -> list[tuple[float, float]]:
-    """Pulses from one step to a later one that take away most: when each starts and how long it lasts."""
-    size = len(times_s)
-    first, last = np.triu_indices(size, 1)
-    norm = gram[first, first] + gram[last, last] - 2.0 * gram[first, last]
-    power = (score[first] - score[last]) ** 2 / np.maximum(norm, 1e-12)
-    power[times_s[last] - times_s[first] > 0.5 * (times_s[-1] - times_s[0])] = 0.0
-    power[_untold(times_s)[last]] = 0.0  # over before readings count: all that is left of it is a start
-    order = np.argsort(-power)
-    found: list[tuple[float, float]] = []
-    for index in order[:200]:
-        start, duration = float(times_s[first[index]]), float(times_s[last[index]] - times_s[first[index]])
-        if all(abs(start - other) > decisions.EVENTS_APART_S for other, _ in found):
-            found.append((start, duration))
-        if len(found) == decisions.NEXT:
-            break
-    return found
+def _pulses(times_s: Array, scores: Scores) -> list[tuple[float, float]]:
+    """Pulses from one step to a later one that take away most, in turn: when each starts and how long it lasts."""
+    first, last = np.triu_indices(len(times_s), 1)
+    duration_s = times_s[last] - times_s[first]
+    # Over before readings count, all that is left of it is a start; what lasts half of the logs is no pulse.
+    seen = (duration_s <= 0.5 * (times_s[-1] - times_s[0])) & ~_untold(times_s)[last]
+
+    def norm(gram: Array) -> Array:
+        return gram[first, first] + gram[last, last] - 2.0 * gram[first, last]
+
+    whole, steps = norm(scores.gram), np.eye(len(times_s))
+
+    def gains(left: Scores) -> Array:
+        return np.where(seen, gain_of(left.score[first] - left.score[last], norm(left.gram), whole), 0.0)
+
+    chosen = forward(scores, gains, lambda k: (steps[first[k]] - steps[last[k]])[:, None], decisions.NEXT)
+    return [(float(times_s[first[k]]), float(duration_s[k])) for k in chosen]
+
+
+def _edges(times_s: Array, scores: Scores) -> list[float]:
+    """Steps that take away most, in turn: when each is."""
+    whole, steps, seen = (
+        np.diag(scores.gram),
+        np.eye(len(times_s)),
+        ~_untold(times_s),
+    )  # before readings count: none in this log
+
+    def gains(left: Scores) -> Array:
+        return np.where(seen, gain_of(left.score, np.diag(left.gram), whole), 0.0)
+
+    return [float(times_s[k]) for k in forward(scores, gains, lambda k: steps[:, [k]], decisions.NEXT)]
 
 
 def _untold(times_s: Array) -> NDArray[np.bool_]:
     """Which instants are before any reading counts."""
     return np.asarray(times_s <= times_s[0] + decisions.UNTOLD_S)
-
-
-def _peaks(power: Array) -> list[int]:
-    order: list[int] = []
-    for index in np.argsort(-power).tolist():
-        if all(abs(index - other) > 2 for other in order):
-            order.append(index)
-        if len(order) == decisions.NEXT:
-            break
-    return order
 
 
 def disturbed_by(case: Case, effect: Effect) -> int | None:

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Linearisation
+from diagnosis.detect.forward import LEFT, forward
+from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.fit.gauss_newton import stacked
 from diagnosis.hypothesis.hypothesis import passes
@@ -21,27 +22,25 @@ def unlike(linearisation: Linearisation, score_tests: Sequence[ScoreTest], count
 
     with c_i (rows,) the change of the innovations by the i-th effect as it is proposed, the plant's coefficients taken out. Effects that
     are alike, as all that coarse readings look like, would else take every place from a second cause; which of them it is their exchange
-    tells. One by which the filter fails comes last.
+    tells. One by which the filter fails is left out.
     """
     if len(score_tests) <= count:
         return list(score_tests)
-    left = thread_map(lambda entry: signature(linearisation, entry), score_tests)
-    whole = [max(float(c @ c), 1e-300) for c in left]
-    chosen: list[int] = []
-    while len(chosen) < count:
-        promised = [entry.gain * float(c @ c) / w for entry, c, w in zip(score_tests, left, whole, strict=True)]
-        best = max((k for k in range(len(left)) if k not in chosen), key=lambda k: promised[k])
-        chosen.append(best)
-        own = left[best] / max(float(np.linalg.norm(left[best])), 1e-150)
-        left = [c - (own @ c) * own for c in left]
-    return [score_tests[k] for k in chosen]
+    scores = linearisation.scores_of(
+        np.stack(thread_map(lambda entry: change(linearisation, entry), score_tests), axis=1)
+    )
+    gain, whole = np.array([entry.gain for entry in score_tests]), np.maximum(np.diag(scores.gram), 1e-300)
+
+    def promised(left: Scores) -> Array:
+        share = np.diag(left.gram) / whole
+        return np.where(share > LEFT, gain * share, 0.0)
+
+    return [score_tests[k] for k in forward(scores, promised, lambda k: np.eye(len(gain))[:, [k]], count)]
 
 
-def signature(linearisation: Linearisation, proposed: ScoreTest) -> Array:
-    """The change of the whitened innovations (rows,) by an effect as it is proposed, less what the plant's coefficients imitate of it."""
+def change(linearisation: Linearisation, proposed: ScoreTest) -> Array:
+    """The change of the whitened innovations (rows,) by an effect as it is proposed; 0 where the filter fails by it."""
     hypothesis = linearisation.fit.hypothesis
-    runs = passes(linearisation.case, hypothesis.with_effects({**hypothesis.effects, proposed.effect: proposed.values}))
-    if runs is None:
-        return np.zeros(len(linearisation.w))
-    change = stacked(runs) - linearisation.w
-    return np.asarray(change - linearisation.slopes @ (linearisation.solve @ (linearisation.slopes.T @ change)))
+    with_it = hypothesis.with_effects({**hypothesis.effects, proposed.effect: proposed.values})
+    runs = passes(linearisation.case, with_it)
+    return np.zeros_like(linearisation.w) if runs is None else stacked(runs) - linearisation.w

@@ -1,13 +1,11 @@
 """What promises most beside what was taken already is tried next, not what looks like it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest
-from diagnosis.detect.unlike import signature, unlike
+from diagnosis.detect.unlike import unlike
 from diagnosis.fit.nominal import nominal_fit
 from tests.diagnosis.arm import arm_case, arm_log
 
@@ -32,13 +30,3 @@ def test_a_second_cause_is_tried_before_what_looks_like_the_first(plain: Lineari
     late = promising("theta_sensor.delay", LATE, 12.0)
     assert unlike(plain, [rubs, falls, late], 2) == [rubs, late]
     assert unlike(plain, [rubs, falls], 2) == [rubs, falls]
-
-
-def test_signatures_hold_no_more_than_what_is_known_of_the_coefficients_keeps_them_from_imitating(
-    plain: Linearisation,
-) -> None:
-    # Truth: with J the slopes, M = J'J and K what is known of the coefficients, J'(c - J (M + K)^-1 J'c) = K (M + K)^-1 J'c.
-    rubs = promising("arm.coulomb", RUBS["arm.coulomb"], 30.0)
-    whole = signature(replace(plain, solve=np.zeros_like(plain.solve)), rubs)
-    expected = plain.case.known @ plain.solve @ plain.slopes.T @ whole
-    assert plain.slopes.T @ signature(plain, rubs) == pytest.approx(expected, rel=1e-6, abs=1e-9)
