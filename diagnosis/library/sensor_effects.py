@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from diagnosis.filter.filter_input import FilterInput, late, variance_stated
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.library.lattice import grid_evidence
+from diagnosis.library.play import behind_play
+from diagnosis.library.reading_spans import charge, less_sure
 from sim.effect import Values
 from sim.paths.output_stages import OutputDelay, OutputLag, OutputSteps, Play
 from sim.paths.path import OutputStage
 
 Array = NDArray[np.float64]
 Row = TypeVar("Row")
-# A reading behind play says that the axis lies within it, no more: as a bell of the same variance an interval costs ln sqrt(12 / 2 pi).
-BELL = 0.32
 RATE_S = 0.05  # to both sides, over which a reading's rate is taken: long enough for an encoder's steps, short for a helicopter
 
 
@@ -61,8 +61,11 @@ def _unrounded(library: EffectLibrary, filter_input: FilterInput, stage: OutputS
     return _coarser(filter_input, stage.output, stage.q, library.bound.plant.sensors[library.outputs[stage.output]])
 
 
-def _through_play(_: EffectLibrary, filter_input: FilterInput, stage: Play) -> FilterInput:
-    return behind_play(filter_input, stage.output, stage.width)
+def _through_play(library: EffectLibrary, filter_input: FilterInput, stage: Play) -> FilterInput:
+    plant, name = library.bound.plant, library.outputs[stage.output]
+    return behind_play(
+        filter_input, stage.output, stage.width, plant.sensors.get(name, 0.0), variance_stated(plant, name)
+    )
 
 
 def unsure_when(filter_input: FilterInput, output: int, jitter_s: float, stated: float) -> FilterInput:
@@ -90,72 +93,14 @@ def rates(t_s: Array, read: Array) -> Array:
 
 def _coarser(filter_input: FilterInput, output: int, grid: float, step: float) -> FilterInput:
     """The filter input where an output lies on a coarser grid: what readings say is read anew, and its evidence is that of the grid."""
-    seen = np.flatnonzero(np.isfinite(filter_input.read[:, output]))
+    seen = np.flatnonzero(np.isfinite(filter_input.y[:, output]))  # none of an axis that is held
     y, r = filter_input.y.copy(), filter_input.r.copy()
-    y[:, output] = filter_input.read[:, output]
+    y[seen, output] = filter_input.read[seen, output]
     r[seen, output] = filter_input.standing[seen, output] * filter_input.single[output]
     evidence = grid_evidence(filter_input.read[:, output], grid, step)
     plain = replace(filter_input, y=y, r=r)
-    return _less_sure(
-        plain, output, seen, grid, evidence - _once(filter_input, output, seen) * _charge(filter_input, output, grid)
-    )
-
-
-def behind_play(filter_input: FilterInput, output: int, width: float) -> FilterInput:
-    """The filter input where an output's readings follow it behind play of that width."""
-    y = filter_input.y.copy()
-    seen = np.flatnonzero(np.isfinite(y[:, output]))
-    moved = np.append(0.0, np.diff(filter_input.read[seen, output]))
-    last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(moved)), 0))
-    unsure = standing_rows(filter_input, output)
-    y[seen, output] += np.where(np.isin(seen, unsure), 0.0, 0.5 * width * np.sign(moved[last]))
-    charge = min(BELL, _charge(filter_input, output, width))
-    return _less_sure(replace(filter_input, y=y), output, unsure, width, -_once(filter_input, output, unsure) * charge)
-
-
-def _less_sure(
-    filter_input: FilterInput, output: int, rows: NDArray[np.int64], span: float, known: float
-) -> FilterInput:
-    """The filter input where the readings of `rows` may be off by anything within `span`, which is charged with
-    `known` instead of by each row."""
-    r = filter_input.r.copy()
-    r[rows, output] += filter_input.standing[rows, output] * span**2 / 12.0
-    counted = _counted(filter_input, output, rows)
-    each = 0.5 * float(np.sum(np.log(r[counted, output] / filter_input.r[counted, output])))
-    return replace(filter_input, r=r, known=filter_input.known + each + known)
-
-
-def _counted(filter_input: FilterInput, output: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Those rows whose readings count in the likelihood."""
-    return np.asarray(rows[filter_input.place[rows, output] >= 0])
-
-
-def _charge(filter_input: FilterInput, output: int, span: float) -> float:
-    """What a reading that may be off by anything within `span` costs in likelihood."""
-    return 0.5 * float(np.log1p(span**2 / 12.0 / filter_input.single[output]))
-
-
-def _once(filter_input: FilterInput, output: int, rows: NDArray[np.int64]) -> float:
-    """How many readings `rows` hold where the same count, read again and again, is one."""
-    return float(np.sum(1.0 / filter_input.standing[_counted(filter_input, output, rows), output]))
-
-
-def standing_rows(filter_input: FilterInput, output: int) -> NDArray[np.int64]:
-    """Instants at which an axis behind play may be anywhere within it: the reading has not changed for longer than it usually takes, or
-    changes back next.
-    """
-    seen = np.flatnonzero(np.isfinite(filter_input.y[:, output]))
-    moved = np.append(0.0, np.diff(filter_input.read[seen, output]))
-    changes = np.flatnonzero(moved != 0.0)
-    if len(changes) < 3:
-        return seen
-    rows = np.arange(len(moved))
-    before = np.clip(np.searchsorted(changes, rows, side="right") - 1, 0, len(changes) - 1)
-    after = np.minimum(before + 1, len(changes) - 1)
-    standing = rows - changes[before]
-    turns = (np.sign(moved[changes[before]]) != np.sign(moved[changes[after]])) & (standing > 0)
-    unsure = turns | (standing < 0) | (standing > 2.0 * float(np.median(np.diff(changes))))
-    return np.asarray(seen[unsure])
+    alike, each_nats = filter_input.standing[seen, output], charge(filter_input, output, grid)
+    return less_sure(plain, output, seen, alike, grid, each_nats, evidence)
 
 
 # What a filter makes of the readings behind each kind of stage: (library, filter input, stage) -> filter input.

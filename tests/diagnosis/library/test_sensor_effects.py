@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 
 from diagnosis.filter.filter_input import FilterInput, beginning, filter_input_of, late
+from diagnosis.library.effect_library import effect_library
 from diagnosis.library.lattice import coarse_step, grid_evidence
-from diagnosis.library.sensor_effects import behind_play, standing_rows, unsure_when
+from diagnosis.library.play import behind_play, pushing
+from diagnosis.library.sensor_effects import sensed, unsure_when
 from records.log import RunLog
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
+from sim.paths.path import played
+from tests.diagnosis.arm import arm
 from tests.soak import sampled
 
 STEP = 1.5e-3
@@ -121,9 +125,10 @@ def test_counts_that_a_conversion_leaves_out_are_no_coarse_grid_of_five_thirds(s
 def test_readings_that_turn_are_unsure_behind_play() -> None:
     # Up, still, down: between the last step up and the first step down the axis crosses the play.
     up, still, down = np.arange(50) * STEP, np.full(30, 49 * STEP), (49 - np.arange(1, 50)) * STEP
-    standing = standing_rows(filter_input(np.concatenate([up, still, down])), 0)
-    assert set(range(50, 80)) <= set(standing.tolist())
-    assert not set(range(2, 49)) & set(standing.tolist())
+    way = pushing(np.concatenate([up, still, down]), STEP)  # a count back and forth is no reversal
+    assert set(way[1:48]) == {1.0}
+    assert set(way[50:79]) == {0.0}
+    assert set(way[82:-1]) == {-1.0}
 
 
 @pytest.mark.parametrize("tau_s", [0.004, 0.02, 0.0237])
@@ -174,18 +179,44 @@ def test_play_of_no_width_is_no_play() -> None:
     # Readings, their variances and what they count go to those without play, linearly in the width or faster.
     plain = readings(STEP * np.round(0.3 * np.sin(np.linspace(0.0, 12.0, 2000)) / STEP))
     for width in (1e-6, 1e-9):
-        behind = behind_play(plain, 0, width)
+        behind = behind_play(plain, 0, width, STEP, STEP**2 / 12)
         assert np.allclose(behind.y, plain.y, rtol=0.0, atol=width)
         assert np.allclose(behind.r, plain.r, rtol=width / STEP)
         assert behind.known == pytest.approx(plain.known, abs=2000 * width / STEP)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1.0, 2.0])
+def test_noise_that_moves_counts_back_and_forth_is_no_reversal_behind_play(noise: float) -> None:
+    # Truth: an angle that swings behind play of 40 steps, read with noise of so many steps. Where the axis is sure to push, what is made of
+    # the readings is the angle, but for their noise: not half the play off to one side and the other.
+    width, angle = 40.0 * STEP, 0.3 * np.sin(np.linspace(0.0, 12.0, 6000))
+    rng = np.random.default_rng(6)
+    read = played(angle, width, None)[0] + noise * STEP * rng.standard_normal(len(angle))
+    plain = readings(STEP * np.round(read / STEP))
+    behind = behind_play(plain, 0, width, STEP, STEP**2 / 12)
+    sure = behind.r[:, 0] < 1.01 * plain.r[:, 0]
+    assert sure.mean() > 0.6
+    off = behind.y[sure, 0] - angle[sure]
+    assert np.abs(off.mean()) < 0.02 * width
+    assert np.mean(np.abs(off) > 0.25 * width) < 0.01
 
 
 def test_play_charges_for_standing_once_a_reading() -> None:
     # What an interval costs as a bell of the same variance, ln sqrt(12 / 2 pi) = 0.32, for each count on which the axis may rest.
     up, still = STEP * np.arange(50), np.full(30, 49 * STEP)
     plain = readings(np.concatenate([up, still, up[::-1][1:]]))
-    behind = behind_play(plain, 0, 20.0 * STEP)
+    behind = behind_play(plain, 0, 20.0 * STEP, STEP, STEP**2 / 12)
     widened = plain.r[:, 0] < 0.99 * behind.r[:, 0]
     own = 0.5 * np.log(behind.r[widened, 0] / plain.r[widened, 0]).sum()
     counts = len(np.unique(plain.y[widened, 0]))  # the first reading counts as standing too
     assert behind.known - plain.known - own == pytest.approx(-0.32 * counts, abs=0.02)
+
+
+def test_a_coarser_grid_brings_back_no_reading_of_an_axis_that_is_held() -> None:
+    # Truth: the readings of a held axis count no more, so no size of a grid may change what the filter makes of them.
+    library = effect_library(arm())
+    held = replace(filter_input(np.zeros(40)), y=np.full((40, 1), np.nan))
+    found = sensed(library, held, {"theta_sensor.quantization": {"q": 0.003}})
+    assert np.isnan(found.y).all()
+    assert np.array_equal(found.r, held.r)
+    assert found.known == held.known

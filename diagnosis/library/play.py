@@ -1,0 +1,80 @@
+"""Readings behind play: where the axis surely pushes it is half the play further, elsewhere it is anywhere within it."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.filter.filter_input import FilterInput
+from diagnosis.library.reading_spans import charge, less_sure
+from sim.paths.path import played
+
+Array = NDArray[np.float64]
+# A reading behind play says that the axis lies within it, no more: as a bell of the same variance an interval costs ln sqrt(12 / 2 pi).
+BELL = 0.32
+LEAST_CHANGES = 3  # of a reading: fewer say nothing of how long it usually takes
+
+
+def behind_play(filter_input: FilterInput, output: int, width: float, step: float, stated: float) -> FilterInput:
+    """The filter input where an output's readings, counts of `step` and of the variance `stated` by themselves, follow it behind play of
+    that width.
+
+    While the axis crosses the play its reading stands: all readings of such a stretch are off by one error.
+    """
+    y = filter_input.y.copy()
+    seen = np.flatnonzero(np.isfinite(y[:, output]))
+    read, noise = filter_input.read[seen, output], max(float(filter_input.single[output]) - stated, 0.0)
+    # What noise does back and forth, a count and the range of n readings, 2 sqrt(2 ln n) standard deviations, is no motion.
+    way = pushing(read, step + 2.0 * float(np.sqrt(2.0 * noise * np.log(max(len(read), 1)))))
+    y[seen, output] += 0.5 * width * way
+    unsure = way == 0.0
+    number = np.cumsum(np.append(0, np.diff(unsure.astype(int)) != 0)[: len(unsure)])  # of the stretch
+    rows = np.bincount(number, minlength=1)[number]
+    alike = np.maximum(rows[unsure], filter_input.standing[seen[unsure], output])
+    each_nats = min(BELL, charge(filter_input, output, width))
+    found = less_sure(replace(filter_input, y=y), output, seen[unsure], alike, width, each_nats)
+    if noise == 0.0 or not unsure.any():
+        return found
+    before, behind = (given.r[seen[unsure], output] for given in (filter_input, found))
+    scatter = max(_scatter(read[unsure], number[unsure]), stated)
+    # These readings scattered as noise, of a variance that they show themselves: less sure, none of it costs the filter anything.
+    scattered = 0.5 * float(np.sum((1.0 - before / behind) * (1.0 + np.log(scatter / before))))
+    return replace(found, known=found.known - scattered)
+
+
+def _scatter(read: Array, stretch: NDArray[np.int64]) -> float:
+    """The variance of readings (n,) about the mean of their stretch."""
+    counts = np.bincount(stretch)
+    away = read - (np.bincount(stretch, read) / np.maximum(counts, 1))[stretch]
+    return float(away @ away) / max(len(read) - int(np.count_nonzero(counts)), 1)
+
+
+def pushing(read: Array, noise: float) -> Array:
+    """The way (n,) in which an axis surely pushes at each of its readings, 1 or -1; 0 where it may be anywhere within the play: the reading
+    has not changed for longer than it usually takes, or changes back next.
+
+    What moves no further than `noise` back and forth moves nothing behind play so wide. Looked at from behind, that shows a reversal too
+    early, as from before too late.
+    """
+    rows = np.arange(len(read))
+    moved, coming = _moves(read, noise), _moves(read[::-1], noise)[::-1]
+    changes = np.flatnonzero(moved)
+    if len(changes) < LEAST_CHANGES:
+        return np.zeros(len(read))
+    before = np.searchsorted(changes, rows, side="right") - 1
+    standing = rows - changes[np.maximum(before, 0)]
+    way = np.where(before < 0, 0.0, moved[changes[np.maximum(before, 0)]])
+    turns = way != -_last(coming[::-1])[::-1]
+    return np.where(turns | (standing > 2.0 * float(np.median(np.diff(changes)))), 0.0, way)
+
+
+def _moves(read: Array, noise: float) -> Array:
+    """The way (n,) in which each reading moved what follows it behind play as wide as its noise; 0 where it moved nothing."""
+    followed = played(read, noise, None)[0] if len(read) else read
+    return np.append(np.zeros(min(len(read), 1)), np.sign(np.diff(followed)))
+
+
+def _last(moves: Array) -> Array:
+    """The last move up to each reading that is none of 0; 0 before the first."""
+    last = np.maximum.accumulate(np.where(moves != 0.0, np.arange(len(moves)), -1))
+    return np.where(last < 0, 0.0, moves[np.maximum(last, 0)])
