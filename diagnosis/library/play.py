@@ -24,8 +24,12 @@ def behind_play(filter_input: FilterInput, output: int, width: float, step: floa
     y = filter_input.y.copy()
     seen = np.flatnonzero(np.isfinite(y[:, output]))
     read, noise = filter_input.read[seen, output], max(float(filter_input.single[output]) - stated, 0.0)
-    # What noise does back and forth, a count and the range of n readings, 2 sqrt(2 ln n) standard deviations, is no motion.
-    way = pushing(read, step + 2.0 * float(np.sqrt(2.0 * noise * np.log(max(len(read), 1)))))
+    # What noise does back and forth, a count and the range of n readings, 2 sqrt(2 ln n) standard deviations, is no motion: play that is no
+    # wider shows in nothing.
+    reach = step + 2.0 * float(np.sqrt(2.0 * noise * np.log(max(len(read), 1))))
+    if width <= reach:
+        return filter_input
+    way = pushing(read, reach)
     y[seen, output] += 0.5 * width * way
     unsure = way == 0.0
     number = np.cumsum(np.append(0, np.diff(unsure.astype(int)) != 0)[: len(unsure)])  # of the stretch

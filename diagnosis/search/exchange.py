@@ -99,8 +99,8 @@ def _of_its_size(
 ) -> list[Hypothesis]:
     """A twin in the place of an effect with all shapes that it may have, as large as is `promised` or, in the same unit, as the effect."""
     own, other, hypothesis = case.library.effects[name].size, case.library.effects[twin], first.fit.hypothesis
-    if other.is_event or other.swings:
-        return []  # where it begins the logs say
+    if other.is_event or other.swings or other.shown_in_readings:
+        return []  # where it begins, or its size, the logs say
     sizes = [begun.effects[twin][other.size.symbol] for begun in promised]
     if other.size.unit == own.unit and not other.size.rough:
         away = hypothesis.effects[name][own.symbol] - (own.zero or 0.0)

@@ -175,14 +175,13 @@ def test_rounding_alone_is_no_noise_and_noise_is_seen() -> None:
     assert readings(STEP * np.round(noisy / STEP)).single[0] == pytest.approx(4.0 * STEP**2, rel=0.1)
 
 
-def test_play_of_no_width_is_no_play() -> None:
-    # Readings, their variances and what they count go to those without play, linearly in the width or faster.
-    plain = readings(STEP * np.round(0.3 * np.sin(np.linspace(0.0, 12.0, 2000)) / STEP))
-    for width in (1e-6, 1e-9):
-        behind = behind_play(plain, 0, width, STEP, STEP**2 / 12)
-        assert np.allclose(behind.y, plain.y, rtol=0.0, atol=width)
-        assert np.allclose(behind.r, plain.r, rtol=width / STEP)
-        assert behind.known == pytest.approx(plain.known, abs=2000 * width / STEP)
+def test_play_that_is_no_wider_than_what_noise_does_is_no_play() -> None:
+    # A count back and forth, or noise of two steps over 6000 readings, some seventeen steps, hides play of as much; of 40 steps not.
+    angle, rng = 0.3 * np.sin(np.linspace(0.0, 12.0, 6000)), np.random.default_rng(6)
+    for noise, hidden in ((0.0, 0.9), (2.0, 16.0)):
+        plain = readings(STEP * np.round(angle / STEP + noise * rng.standard_normal(len(angle))))
+        assert behind_play(plain, 0, hidden * STEP, STEP, STEP**2 / 12) is plain
+        assert np.any(behind_play(plain, 0, 40.0 * STEP, STEP, STEP**2 / 12).r > plain.r)
 
 
 @pytest.mark.parametrize("noise", [0.0, 1.0, 2.0])
