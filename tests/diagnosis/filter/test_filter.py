@@ -1,6 +1,7 @@
 """The filter: innovations white when model and noise are the truth's, slopes equal to finite differences, answers linear."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,6 +27,7 @@ from sim.effect import Role
 from sim.simulate import Noise, simulate
 from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
+from tests.own_plants import OwnPlant
 from tests.plants import stated_table
 from tests.soak import sampled
 from tests.test_project import ROOT
@@ -333,3 +335,32 @@ def test_a_state_that_settles_well_within_a_row_neither_rings_nor_grows(L: float
     found = predictions(case, case.flights[0], nominal_hypothesis(case, -3.0))
     assert np.nanmax(np.abs(found - run.y)) < 0.01
     assert np.isfinite(found).sum() > 250
+
+
+# A coil beside which two states turn about each other, both with a kink at 0 that moves nothing: 4 events a turn.
+TURNING = OwnPlant(
+    {"R": (2.0, 0.1, "V A^-1"), "L": (0.1, 0.01, "V s A^-1"), "turn": (157.0, 0.0, "s^-1"), "kink": (1e-12, 0.0, "1")},
+    {"i_A": 1e-3},
+    """
+i, x, y, u = (symbol(name) for name in ("i_A", "x_1", "y_1", "u_V"))
+nothing = p["kink"] * (sympy.Abs(x) + sympy.Abs(y))
+return Model(
+    name="NAME", states=(i, x, y), inputs=(u,), outputs={"i_A": i}, parameters=PARAMETERS,
+    rates={i: (u - p["R"] * i) / p["L"], x: p["turn"] * y + nothing, y: -p["turn"] * x}, axes=(), input_limits={u: (-12, 12)},
+    places=Places(inputs={"input": InputPlace(u, "V", 12.0)}, sensors={"i_sensor": SensorPlace("i_A", "A", 6.0)}),
+)
+""",
+)
+
+
+@pytest.mark.parametrize(("events_a_row", "is_whole"), [(1.0, True), (4.0, False)])
+def test_a_pass_is_given_up_that_rattles_in_every_row(tmp_path: Path, events_a_row: float, is_whole: bool) -> None:
+    # Truth: 4 zeros a turn, so many turns in a row of 10 ms. Up to 200 events and 2 a row are borne: all of 800, not 3200 in 800 rows.
+    turning = replace(TURNING, parameters={**TURNING.parameters, "turn": (50.0 * np.pi * events_a_row, 0.0, "s^-1")})
+    bound = bind(load_plant(turning.write(tmp_path, f"turning_{events_a_row:.0f}")))
+    t_s = 0.01 * np.arange(800)
+    log = RunLog(log_columns(bound.model), 0.01, "open", t_s, np.ones((800, 1)), np.full((800, 1), 0.5))
+    case = make_case(effect_library(bound), [log])
+    (flight,) = case.flights
+    case = case.with_flights([replace(flight, x0=np.array([0.5, 1.0, 0.0]))])
+    assert (passes(case, nominal_hypothesis(case, -3.0)) is not None) is is_whole

@@ -1,0 +1,44 @@
+"""Which ends are fitted once more: those that may yet become the best, however many others were found."""
+
+from collections.abc import Sequence
+
+import pytest
+
+from diagnosis.fit.evidence import FittedHypothesis
+from diagnosis.hypothesis.case import Case
+from diagnosis.search import beam
+from tests.diagnosis.arm import arm_case, arm_log, plain_linearisation
+
+
+@pytest.mark.parametrize(
+    ("evidences", "settled"),
+    [
+        # 5 % of a gap of 2000 nats are 100: an end that lacks 99 may yet become the best, one that lacks 101 not.
+        ((2000.0, 1901.0, 1899.0, 500.0), {"best", "second"}),
+        # Of a gap of 200 nats they are 10, less than the 30 by which ends were seen to differ.
+        ((200.0, 171.0, 169.0, 50.0), {"best", "second"}),
+    ],
+)
+def test_ends_that_are_far_from_the_best_are_not_settled(
+    monkeypatch: pytest.MonkeyPatch, evidences: Sequence[float], settled: set[str]
+) -> None:
+    plain = plain_linearisation().fit
+    nominal = FittedHypothesis((), plain, 0.0)
+    names = ("best", "second", "third", "last")
+    found = {
+        frozenset((name,)): FittedHypothesis((name,), plain, value)
+        for name, value in zip(names, evidences, strict=True)
+    }
+    asked: set[str] = set()
+
+    def once_more(_: Case, entry: FittedHypothesis) -> FittedHypothesis:
+        asked.update(entry.effects)
+        return entry
+
+    for step in ("refined", "once_more", "with_own_events"):
+        monkeypatch.setattr(beam, step, once_more)
+    monkeypatch.setattr(beam, "_certain", lambda entry, found: True)
+    monkeypatch.setattr(beam, "is_twin", lambda case, entry, best: True)
+    monkeypatch.setattr(beam, "with_noise_beside", lambda case, entries: [])
+    beam._settle(arm_case(arm_log(seed=47)), found, nominal)
+    assert asked == settled
