@@ -1,7 +1,6 @@
 """Columns that stand in other rows than those of their time: logged a row or two late, or early.
 
 A plant that answers before its command was logged is against all causes, so the log is wrong. One that answers late may be so itself.
-Where the plant as stated is far from its rig it is asked with the dry friction and the constant force that rigs have.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -13,15 +12,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.wiring import fitted_or_none, is_strained
+from diagnosis.decide.columns import (
+    is_as_good,
+    is_refused,
+    is_strained,
+    is_told,
+    looked_at,
+    settled_or_none,
+    with_usual_forces,
+)
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.filter.filter_input import READINGS, FilterInput, beginning
+from diagnosis.filter.filter_input import READINGS, FilterInput
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import fitted_from, gain_over, settled
+from diagnosis.fit.nominal import fitted_from, gain_over
 from diagnosis.hypothesis.case import Case, FilteredLog
-from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.hypothesis.initial_state import start_of
 from jobs.thread_map import thread_map
 from records.errors import BadInput
@@ -62,11 +69,6 @@ class Moved:
     alike: tuple[Misplaced, ...] = ()
     end: Fit | None = None
 
-    @property
-    def told(self) -> bool:
-        """Whether it gains so much that it is to be told."""
-        return self.gain > decisions.ROWS_GAIN
-
 
 def demand_rows(
     case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LATE,), beaten: float = 0.0
@@ -74,22 +76,22 @@ def demand_rows(
     """What is to be known of the rows in which columns stand: that some may be others, or that these logs do not tell.
 
     Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own,
-    and by more than ROWS_REFUSED better; but where an effect promises more than that, the logs are those of a rig that has it.
+    and by more than COLUMNS_REFUSED better; but where an effect promises more than that, the logs are those of a rig that has it.
     `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are. `beaten` are the nats by which
     another reading of the inputs between rows is likelier than this one, which a move must gain besides; it is told of nothing else.
     """
-    short = case.with_flights([_begun(flight) for flight in case.flights])
-    usual = _usual(short, nominal)
-    if usual is None:
+    short = looked_at(case)
+    plain = settled_or_none(short, nominal.hypothesis)
+    if plain is None:
         return ()
+    usual = with_usual_forces(short, plain)
     found, commands = misplaced(Asked(short, usual))
     found = None if found is None else replace(found, gain=found.gain - beaten)
-    if beaten and (found is None or not found.told):
+    if beaten and (found is None or not is_told(found.gain)):
         return ()
     if found is None:
         return _unseen(commands)
-    refused = found.follows and found.slip.way in ways and found.gain > decisions.ROWS_REFUSED
-    if not refused:
+    if not (found.follows and found.slip.way in ways and is_refused(found.gain)):
         return (_note(case, found),)
     if most_by_an_effect(short, _from_the_moved(short, usual, found)) > found.gain:
         return ()
@@ -124,14 +126,14 @@ def rows_in_doubt(case: Case, found: FittedHypothesis, notes: Sequence[Note]) ->
     that stands early does, and beside it moving columns gains nothing."""
     if not any(note.kind in OTHER_ROWS for note in notes):
         return tuple(notes)
-    short = case.with_flights([_begun(flight) for flight in case.flights])
+    short = looked_at(case)
     usual = fit(short, found.fit.hypothesis, rounds=0)
     if usual is None:
         return tuple(notes)
     asked, model = Asked(short, usual), case.library.bound.model
     slips = (*asked.commands, *_one_column(len(model.inputs), len(model.outputs)))
-    gain = max(thread_map(asked.promised, slips)) - usual.promised
-    return tuple(note for note in notes if gain > decisions.ROWS_GAIN or note.kind not in OTHER_ROWS)
+    gain = max(thread_map(asked.promised, slips))
+    return tuple(note for note in notes if is_told(gain) or note.kind not in OTHER_ROWS)
 
 
 @dataclass(frozen=True)
@@ -144,7 +146,9 @@ class Asked:
     def promised(self, slip: Misplaced) -> float:
         """What a move gains, in nats, to first order in all that the plant's fit may then move; -inf where the filter fails."""
         at = fit(moved(self.case, slip), self.usual.hypothesis, rounds=0)
-        return -np.inf if at is None else at.log_posterior - self.usual.log_posterior + at.promised
+        return (
+            -np.inf if at is None else at.log_posterior + at.promised - self.usual.log_posterior - self.usual.promised
+        )
 
     def moved(self, slip: Misplaced) -> Moved:
         """What a move gains once the plant is fitted to it, from where its fit to the logs as they are ended and afresh: numbers that make
@@ -152,7 +156,7 @@ class Asked:
         other = moved(self.case, slip)
         afresh = nominal_hypothesis(self.case, float(decisions.FIRST_PROCESS_NOISE))
         ends = [
-            found for start in (self.usual.hypothesis, afresh) if (found := _settled_or_none(other, start)) is not None
+            found for start in (self.usual.hypothesis, afresh) if (found := settled_or_none(other, start)) is not None
         ]
         if not ends:
             return Moved(slip, -np.inf, False)
@@ -166,73 +170,41 @@ class Asked:
         return Misplaced(every, 1), Misplaced(every, -1)
 
 
-def misplaced(asked: Asked) -> tuple[Moved | None, tuple[Moved, ...]]:
-    """The columns that stand in other rows than those of their time, None where none do; and what it gains to move all inputs by a row,
-    nothing where that is surely lost."""
+def misplaced(asked: Asked) -> tuple[Moved | None, tuple[float, ...]]:
+    """The columns that stand in other rows than those of their time, None where none do; and what it promises, in nats, to move all inputs
+    by a row, late and early."""
     model = asked.case.library.bound.model
-    singles = tuple(_one_column(len(model.inputs), len(model.outputs)))
-    promised = dict(zip(tried := (*asked.commands, *singles), thread_map(asked.promised, tried), strict=True))
-    sound = bool(model.axes) and not is_strained(asked.case, asked.usual)
-    seen = sound and max(promised[slip] for slip in asked.commands) < decisions.ROWS_SURELY_LOST
-    likelier = sorted((slip for slip in singles if promised[slip] > 0.0), key=lambda slip: -promised[slip])
-    tried = (*(() if seen else asked.commands), *likelier[: decisions.ASKED])
-    ones = dict(zip(tried, thread_map(asked.moved, tried), strict=True))
-    commands = tuple(one for slip, one in ones.items() if slip in asked.commands)
-    for one in sorted(ones.values(), key=lambda one: (-one.follows, -one.gain)):
+    slips = (*asked.commands, *_one_column(len(model.inputs), len(model.outputs)))
+    promised = dict(zip(slips, thread_map(asked.promised, slips), strict=True))
+    commands = tuple(promised[slip] for slip in asked.commands)
+    likelier = sorted((slip for slip in slips if promised[slip] > 0.0), key=lambda slip: -promised[slip])
+    ones = thread_map(asked.moved, likelier[: decisions.ASKED])
+    for one in sorted(ones, key=lambda one: (-one.follows, -one.gain)):
         found = _furthest(one, asked.moved)
-        if found.told:
+        if is_told(found.gain):
             alike = tuple(
                 other.slip
-                for other in ones.values()
-                if other not in (one, found)
-                and other.slip.way == found.slip.way
-                and other.gain > found.gain - decisions.ROWS_GAIN
+                for other in ones
+                if other not in (one, found) and other.slip.way == found.slip.way and is_as_good(other.gain, found.gain)
             )
             return replace(found, alike=alike), commands
     return None, commands
 
 
-def _unseen(commands: Sequence[Moved]) -> tuple[Note, ...]:
+def _unseen(commands: Sequence[float]) -> tuple[Note, ...]:
     """That the logs do not tell in which rows the commands stand, where a row more or less would not show."""
-    if not commands or max(one.gain for one in commands) < -decisions.ROWS_GAIN:
+    up, down = commands
+    if is_told(-max(commands)):
         return ()
-    up, down = (one.gain for one in commands)
     said = (
         f"a shift of one row cannot be seen in these logs: with the commands one row up the plant follows {_better(up)}, "
-        f"one row down {_better(down)}; {float(decisions.ROWS_GAIN):.0f} nats would tell"
+        f"one row down {_better(down)}; {float(decisions.COLUMNS_TOLD):.0f} nats would tell"
     )
     return (Note("rows_unseen", "inputs", {"up_nats": up, "down_nats": down}, said),)
 
 
-def _begun(flight: FilteredLog) -> FilteredLog:
-    seconds = min(float(decisions.ROWS_S), decisions.ROWS_MOST * flight.step_s)
-    return replace(flight, filter_input=beginning(flight.filter_input, seconds))
-
-
 def _better(gain: float) -> str:
     return f"{abs(gain):.2g} nats {'better' if gain > 0.0 else 'worse'}" if np.isfinite(gain) else "not at all"
-
-
-def _usual(case: Case, nominal: Fit) -> Fit | None:
-    """The plant as it follows the logs, with usual forces besides where it is far from its rig without; None where it cannot run."""
-    plain = _settled_or_none(case, nominal.hypothesis)
-    if plain is None or not is_strained(case, plain):
-        return plain
-    starts = (plain.hypothesis, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE)))
-    forced = thread_map(lambda start: _settled_or_none(case, _with_forces(case, start)), starts)
-    best = max((found for found in forced if found is not None), key=lambda found: found.log_posterior, default=plain)
-    return best if best.log_posterior > plain.log_posterior + decisions.ROWS_GAIN else plain
-
-
-def _with_forces(case: Case, start: Hypothesis) -> Hypothesis:
-    """The same with dry friction and a constant force on every axis that has none yet."""
-    effects = {name: effect for name, effect in case.library.effects.items() if effect.everywhere}
-    sizes = {name: {p.symbol: p.reference for p in effect.parameters} for name, effect in effects.items()}
-    return start.with_effects(sizes | dict(start.effects))
-
-
-def _settled_or_none(case: Case, start: Hypothesis) -> Fit | None:
-    return fitted_or_none(case, lambda case: settled(case, start))
 
 
 def _furthest(found: Moved, asked: Callable[[Misplaced], Moved]) -> Moved:

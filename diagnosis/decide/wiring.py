@@ -8,14 +8,20 @@ from typing import Any
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.filter.filter_input import beginning
+from diagnosis.decide.columns import (
+    fitted_or_none,
+    is_as_good,
+    is_refused,
+    is_strained,
+    is_told,
+    looked_at,
+)
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.nominal import gain_over
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.hypothesis.initial_state import start_of
-from diagnosis.search.draughts import gust_shares
 from jobs.thread_map import thread_map
 from records.errors import BadInput
 from records.reasons import Note
@@ -43,19 +49,17 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
     found = likelier_wiring(case, fitted) if is_strained(case, nominal) else None
     if found is None:
         return _blind_signs(case, nominal)
-    wiring, gain, is_sure = found
+    wiring, gain = found
     got = f"{wiring.what}: read so, the plant follows them {gain:.0f} nats better"
-    if not is_sure:
+    if not is_refused(gain):
         return (Note("columns_doubted", "columns", {"gain_nats": gain}, f"perhaps {got}"),)
     raise BadInput("columns", where, got, "columns that are what they are called", wiring.remedy)
 
 
-def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float, bool] | None:
-    """Another reading of the columns under which the plant follows the logs better, with what it gains in nats, and whether that is sure:
-    with its parameters where they are stated; or, of a plant that is far from its rig whatever the reading, by far."""
-    short = case.with_flights(
-        [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
-    )
+def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
+    """Another reading of the columns under which the plant is likelier, as stated and as fitted, and what it gains in nats; None where
+    there is none."""
+    short = looked_at(case)
     least = as_stated(short)
     slips = [(wiring, read) for wiring in wirings(case) if as_stated(read := _rewired(short, wiring)) > least]
     usual = fitted_or_none(short, fitted) if slips else None
@@ -65,10 +69,10 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = gain_over(short, usual, fit)
-    if gain <= decisions.WIRING_DOUBT:
+    if not is_told(gain):
         return None
-    alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
-    return _either(best, alike), gain, bool(gain > decisions.WIRING_GAIN)
+    alike = [other for other, own in found if is_as_good(own.log_posterior, fit.log_posterior)]
+    return _either(best, alike), gain
 
 
 def _blind_signs(case: Case, nominal: Fit) -> tuple[Note, ...]:
@@ -78,8 +82,7 @@ def _blind_signs(case: Case, nominal: Fit) -> tuple[Note, ...]:
         name
         for place, (name, wiring) in enumerate(zip(inputs, wirings(case), strict=False))
         if any(np.any(flight.filter_input.u[:, place]) for flight in case.flights)
-        and abs(likelihood_of(_rewired(case, wiring), nominal.hypothesis) - nominal.log_likelihood)
-        < decisions.WIRING_ALIKE
+        and not is_told(abs(likelihood_of(_rewired(case, wiring), nominal.hypothesis) - nominal.log_likelihood))
     ]
     if not blind:
         return ()
@@ -102,24 +105,6 @@ def _either(best: Wiring, alike: Sequence[Wiring]) -> Wiring:
         what=", or ".join(wiring.what for wiring in first),
         remedy=", or ".join(wiring.remedy for wiring in first),
     )
-
-
-def is_strained(case: Case, fit: Fit) -> bool:
-    """Whether the plant as stated is far off the logs: in a parameter, or in what the noise must do."""
-    hypothesis = fit.hypothesis
-    return bool(
-        np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.WIRING_DEVIATIONS
-        or np.max(hypothesis.process_noise, initial=-np.inf) > decisions.WIRING_NOISE
-        or max(gust_shares(case, hypothesis).values(), default=0.0) >= decisions.DRAUGHT
-    )
-
-
-def fitted_or_none(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:
-    """The fit to a case; None where it cannot be run along its logs."""
-    try:
-        return fitted(case)
-    except BadInput:
-        return None
 
 
 def wirings(case: Case) -> Iterator[Wiring]:

@@ -144,9 +144,14 @@ def make_case(
 
 def beginning_of(case: Case) -> Case:
     """The first BEGINNING_ROWS rows of each log: some numbers of noise are known well enough from those."""
+    return first_rows(case, int(decisions.BEGINNING_ROWS))
+
+
+def first_rows(case: Case, count: int) -> Case:
+    """The first `count` rows of each log."""
     flights = []
     for flight in case.flights:
-        since = flight.log.t_s[: int(decisions.BEGINNING_ROWS)]
+        since = flight.log.t_s[:count]
         cut = beginning(flight.filter_input, float(since[-1] - since[0]))
         flights.append(flight if len(since) == len(flight.log.t_s) else replace(flight, filter_input=cut))
     return case.with_flights(flights)

@@ -72,7 +72,7 @@ def test_columns_in_other_rows_are_refused_by_name(
 
 
 def test_a_column_of_which_a_short_log_tells_little_is_told_and_not_refused(library: EffectLibrary, fly: Fly) -> None:
-    # Truth: u_M_V stands one row late; the flight is long enough for 30 nats and too short for 50.
+    # Truth: u_M_V stands one row late; the flight is long enough for 25 nats and too short for 50.
     assert told(library, logged(fly(31, seconds=SECONDS), Misplaced((0,), 1))) == ["columns_late"]
 
 
@@ -134,7 +134,7 @@ def test_an_arm_that_lacks_its_friction_is_not_taken_for_commands_logged_late() 
 def test_an_effect_that_promises_more_than_a_move_of_columns_is_seen(effects, promised: bool) -> None:
     # Truth: a play of 3 degrees, which one column a row late could follow only in part; and a rig that lacks nothing.
     case = make_case(effect_library(arm()), [arm_log(effects, seed=7)])
-    assert (most_by_an_effect(case, plain_fit(case)) > 2.0 * decisions.ROWS_REFUSED) is promised
+    assert (most_by_an_effect(case, plain_fit(case)) > 2.0 * decisions.COLUMNS_REFUSED) is promised
 
 
 def test_of_a_move_that_an_effect_explains_better_nothing_is_said() -> None:

@@ -5,23 +5,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis import decisions
 from records.errors import BadInput
 from tests.diagnosis.arm import arm, arm_log
 from twinlaw.workflows.identify.columns import demand_columns, where_most_moves
 
 
-def test_of_a_long_log_the_seconds_in_which_its_outputs_travel_most_are_looked_at() -> None:
-    log = arm_log(seconds=30.0)
+def test_of_a_long_log_the_rows_in_which_its_outputs_travel_most_are_looked_at() -> None:
+    log = arm_log(seconds=60.0)
     y = log.y.copy()
     y[:900], y[400] = y[900], np.nan  # at rest at first
     part = where_most_moves(replace(log, y=y))
-    assert 8.9 <= part.t_s[0] <= 10.0
-    assert part.t_s[-1] - part.t_s[0] == pytest.approx(20.0, abs=0.02)
+    assert 8.9 <= part.t_s[0] <= 20.0
+    assert len(part.t_s) == decisions.COLUMNS_ROWS
     assert where_most_moves(part) is part
 
 
 def test_a_column_that_was_never_read_says_nothing_of_where_most_moves() -> None:
-    log = arm_log(seconds=30.0)
+    log = arm_log(seconds=60.0)
     beside = replace(log, y=np.hstack((log.y, np.full_like(log.y, np.nan))))
     assert where_most_moves(beside).t_s[0] == where_most_moves(log).t_s[0]
 

@@ -49,19 +49,18 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
     busiest = make_case(library, [where_most_moves(log) for log in logs.values()], stated=bound)
     nominal = plain_fit(busiest)
     told = demand_wiring(busiest, nominal, plain_fit, where)
-    return (*told, *demand_rows(make_case(library, list(logs.values()), stated=bound), nominal, where, (LATE, EARLY)))
+    return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)))
 
 
 def where_most_moves(log: RunLog) -> RunLog:
-    """The rows of the seconds in which the outputs travel most, as many as a diagnosis looks at to doubt the columns."""
-    if log.t_s[-1] - log.t_s[0] <= decisions.WIRING_S:
+    """The rows in which the outputs travel most, as many as a diagnosis looks at to doubt the columns."""
+    rows = int(decisions.COLUMNS_ROWS)
+    if len(log.t_s) <= rows:
         return log
     y = log.y[:, np.isfinite(log.y).any(axis=0)]
     y = np.where(np.isfinite(y), y, np.nanmean(y, axis=0, keepdims=True)) if y.size else y
     spread = np.std(y, axis=0)
     travel = np.abs(np.diff(y, axis=0)) @ np.where(spread > 0.0, 1.0 / np.where(spread > 0.0, spread, 1.0), 0.0)
     gone = np.concatenate([[0.0], np.cumsum(np.nan_to_num(travel))])
-    ends = np.searchsorted(log.t_s, log.t_s + decisions.WIRING_S, side="right") - 1
-    whole = log.t_s + decisions.WIRING_S <= log.t_s[-1]
-    first = int(np.argmax(np.where(whole, gone[ends] - gone, -1.0)))
-    return trimmed(log, float(log.t_s[first]), float(log.t_s[ends[first]]))
+    first = int(np.argmax(gone[rows - 1 :] - gone[: 1 - rows]))
+    return trimmed(log, float(log.t_s[first]), float(log.t_s[first + rows - 1]))
