@@ -22,37 +22,12 @@ CLIPPED_CHANGE = Limit(
     "second differences of readings are clipped there: the edge of a step is no noise",
     DEVELOPMENT,
 )
-CLEAR_SCATTER = Limit(
-    2.0,
-    "stated variances",
-    "measured scatter counts as noise only where it is clearly above what the sensor states: rounding alone is none",
-    DEVELOPMENT,
-)
 MORE_THAN_ONE = Limit(
     1.5,
     "rows, counts, encoder steps",
     "what comes in whole numbers is more than one: rows are missing, a count is no single one, a grid is coarser, a slip is no rounding",
     DEVELOPMENT,
 )
-MERELY_ROUNDED = Limit(
-    1.01,
-    "variances of rounding",
-    "with more noise a reading is carried over an edge and back, and the edge tells nothing",
-)
-SLOW_COUNTS = Limit(
-    0.5, "counts per row", "of faster motion an edge tells no more than the count", "quiet development cases"
-)
-UNDONE_ROWS = Count(3, "rows", "a count that ends as it began within so few rows is noise's", "quiet development cases")
-UNDONE_SHARE = Limit(
-    0.05, "share of changes", "where more of all changes are undone, edges are not used", "quiet development cases"
-)
-TURNED = Limit(
-    2.0,
-    "factor",
-    "at a turning point an edge is passed faster than on average over the count",
-    "quiet development cases",
-)
-LEAST_VALUES = Count(3, "different counts passed", "fewer show no grid")
 GRID_NATS = Limit(
     16.0, "nats", "a coarser grid's evidence beyond ln of the counts: of 900 random logs chance found a grid in five"
 )

@@ -15,37 +15,55 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
 
     (1)  y = e + v h / 2,  variance travel^2 / 12,  travel = step h / T,
 
-    v that of the parabola through this edge and those passed before and after, T the shorter of the times since and until.
+    v that of the parabola through this edge and those passed before and after, T the shorter of the times since and until. A count left
+    where it was entered, after T, was passed half on average by a parabola, which crosses the edge twice as fast:
 
-    Noise makes counts change to and fro beside an edge, so that none of them tells when it was passed: where more than UNDONE_SHARE of all
-    changes are undone within UNDONE_ROWS, readings stay what they were.
+    (2)  depth = v T / 4 = step / 2,  travel = v h = 2 step h / T
+
+    Of an output that travels a step in a row an edge tells no more than the count. Noise makes counts change to and fro beside an edge, so
+    that none of them tells when it was passed: where that is the likelier reason, readings stay what they were.
     """
     seen = np.flatnonzero(np.isfinite(y))
     moved = np.diff(y[seen])
     after = np.flatnonzero(moved) + 1
-    if step <= 0.0 or len(after) < 2 or _undone(after, np.sign(moved[after - 1])) > decisions.UNDONE_SHARE:
+    if step <= 0.0 or len(after) < 2:
         return y, r
     rows, before = seen[after], seen[after - 1]
     edge, moved = 0.5 * (y[rows] + y[before]), moved[after - 1]
-    h, lasts = t_s[rows] - t_s[before], np.diff(t_s[rows])
-    travel = step * h / _shorter(lasts, np.sign(moved))
-    one_row = h < decisions.MORE_THAN_ONE * float(np.median(np.diff(t_s[seen])))
-    sharp = (np.abs(moved) < decisions.MORE_THAN_ONE * step) & one_row & (travel < decisions.SLOW_COUNTS * step)
-    forward = np.clip(_speed(lasts, np.diff(edge)) * h * np.sign(moved), 0.0, travel)
+    h, lasts, signs = t_s[rows] - t_s[before], np.diff(t_s[rows]), np.sign(moved)
+    row = float(np.median(np.diff(t_s[seen])))
+    if _noisy(lasts / row, signs):
+        return y, r
+    travel = step * h / _shorter(lasts, signs)
+    one_row = h < decisions.MORE_THAN_ONE * row
+    sharp = (np.abs(moved) < decisions.MORE_THAN_ONE * step) & one_row & (travel < step)
+    forward = np.clip(_speed(lasts, np.diff(edge)) * h * signs, 0.0, travel)
     found_y, found_r = y.copy(), r.copy()
-    found_y[rows[sharp]] = (edge + 0.5 * forward * np.sign(moved))[sharp]
+    found_y[rows[sharp]] = (edge + 0.5 * forward * signs)[sharp]
     found_r[rows[sharp]] = np.minimum(travel[sharp] ** 2 / 12.0, r[rows[sharp]])
     return found_y, found_r
 
 
-def _undone(after: NDArray[np.int64], signs: Array) -> float:
-    """Which share of the changes at rows `after` (k,) go back within UNDONE_ROWS."""
-    return float(np.mean((np.diff(after) <= decisions.UNDONE_ROWS) & (signs[1:] != signs[:-1])))
+def _noisy(lasts: Array, signs: Array) -> bool:
+    """Whether noise is the likelier reason why counts are left where they were entered, by their lengths in rows `lasts` (k - 1,) and the
+    ways of the k changes.
+
+    One is undone where it lasts two rows at most, after which (2) tells nothing. Noise undoes it as likely as not. A parabola that takes b
+    rows over the count before, and turns anywhere in this one, does with probability
+
+    (3)  p = q^2 / (1 - q^2),  q = 1 / (1 + b)
+    """
+    turned = np.flatnonzero(signs[1:] != signs[:-1])
+    turned = turned[turned > 0]
+    q = 1.0 / (1.0 + np.maximum(lasts[turned - 1], 1.0))
+    p = q**2 / (1.0 - q**2)
+    undone = np.round(lasts[turned]) <= 2.0
+    return bool(np.sum(np.where(undone, np.log(0.5 / p), np.log(0.5 / (1.0 - p)))) > 0.0)
 
 
 def _shorter(lasts: Array, signs: Array) -> Array:
-    """The shorter of the times (k,) beside each change, `lasts` (k - 1,) between them; a count left where it was entered lasts less."""
-    lasts = np.where(signs[1:] != signs[:-1], lasts / decisions.TURNED, lasts)
+    """The shorter T (k,) of the times beside each change, `lasts` (k - 1,) between them, half of one by (2)."""
+    lasts = np.where(signs[1:] != signs[:-1], lasts / 2.0, lasts)
     return np.asarray(np.minimum(np.append(np.inf, lasts), np.append(lasts, np.inf)))
 
 

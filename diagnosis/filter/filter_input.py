@@ -73,7 +73,9 @@ def filter_input_of(
     y, r = read.copy(), np.where(np.isfinite(single), standing * single, 1.0)
     for place, name in enumerate(outputs):
         step = plant.sensors.get(name, 0.0)
-        if single[place] < decisions.MERELY_ROUNDED * step**2 / 12.0:
+        if (
+            single[place] <= step**2 / 12.0
+        ):  # with noise a reading is carried over an edge and back: the edge tells nothing
             y[:, place], r[:, place] = sharpened(log.t_s, read[:, place], r[:, place], step)
     return FilterInput(
         log.t_s,
@@ -119,13 +121,14 @@ def _variance(y: Array, step: float, stated: float) -> float:
     """Variance of a measurement: that of its encoder's step and noise, or what its differences show where that is clearly more.
 
     White noise of variance r leaves second differences of 6 r and fourth ones of 70 r; the smaller says more, as motion adds to both.
-    Rounding alone leaves 6 step^2 / 12; what is far beyond the usual is left out. Where no step is stated the readings' own counts: a
-    speed that is logged in whole counts mostly stands still, but is not exact for that.
+    Rounding leaves 6 step^2 / 12 on average, and twice as much of a steady motion that it rounds up and down in turns: what is more is
+    noise. What is far beyond the usual is left out. Where no step is stated the readings' own counts: a speed that is logged in whole
+    counts mostly stands still, but is not exact for that.
     """
     seen = min(_scatter(y, order, times, step) for order, times in DIFFERENCES)
     if not step:
         return max(stated + _finest(y) ** 2 / 12.0, seen, 1e-18)
-    return min(seen, 100.0 * stated) if seen > decisions.CLEAR_SCATTER * stated else stated
+    return min(seen, 100.0 * stated) if seen > stated + step**2 / 12.0 else stated
 
 
 def _scatter(y: Array, order: int, times: float, step: float) -> float:

@@ -31,7 +31,7 @@ def coarse_step(y: Array, step: float) -> float | None:
     """The step of the coarsest grid that the readings y (n,) lie on where it is coarser than `step`; None where there is none."""
     read = _counts(y, step)
     counts, times = np.unique(_passed(read), return_counts=True)
-    if len(counts) < decisions.LEAST_VALUES:
+    if len(counts) == 0:
         return None
     different, span = min(len(np.unique(read)), int(times.sum())), int(np.ptp(counts)) + 1
     for unit in _units(span):
@@ -94,8 +94,8 @@ def _peaks(counts: Counts, times: Counts, unit: int) -> list[float]:
     passes = np.bincount(places - places[0], weights=times, minlength=span)
     points = 1 << (PADDED * span - 1).bit_length()
     height = np.abs(np.fft.rfft(passes, points))
-    slowest = int(0.5 * decisions.LEAST_VALUES * points / span)
-    height[:slowest] = 0.0  # a grid of fewer points between the extremes is none
+    slowest = int(decisions.MORE_THAN_ONE * points / span)
+    height[:slowest] = 0.0  # of a single step between the extremes nobody knows that others are alike
     height[height < LOWEST * times.sum()] = 0.0
     if unit > 1:
         height[points // FINEST :] = 0.0  # the next unit shows these better
