@@ -9,59 +9,69 @@ from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, beginning
 from diagnosis.filter.kalman import Noise
 from diagnosis.library.effect_library import EffectLibrary
+from logcheck.standing import RUN_UP_S
 
 Array = NDArray[np.float64]
 START_S = 0.1
-RUN_UP_S, LONGEST_STEP_S = 4.0, 0.01
+LONGEST_STEP_S = 0.01
 FIRST_REST_DOUBT = -1.7  # log10 s: how long friction about rest is in doubt, from where every fit of it starts
 
 
 def start_of(library: EffectLibrary, filter_input: FilterInput, locked: tuple[str, ...]) -> tuple[Array, Array]:
     """Where a flight starts and its variances (states,): angles as first read, speeds as they then change, other states at rest under
-    the first inputs, or short of it where the plant then follows the first readings better."""
+    the first inputs, or at zero where the plant then follows the first readings better."""
     x0, p0, unread = _first_guess(library, filter_input)
-    early = beginning(filter_input, decisions.JUDGED_START_S)
+    early = beginning(filter_input, decisions.UNTOLD_S)
     instants = len(early.t_s)
     early = replace(early, rows=instants, place=np.where(np.isfinite(early.y), np.arange(instants)[:, None], -1))
     value = _likelihood(library, early, x0, p0, locked)
     for index in unread:
-        for share in decisions.REST_SHARES:
-            other = x0.copy()
-            other[index] = share * unread[index]
-            fitted = _likelihood(library, early, other, p0, locked)
-            if fitted > value:
-                x0, value = other, fitted
+        other = x0.copy()
+        other[index] = 0.0
+        fitted = _likelihood(library, early, other, p0, locked)
+        if fitted > value:
+            x0, value = other, fitted
     return x0, p0
 
 
-def _first_guess(library: EffectLibrary, filter_input: FilterInput) -> tuple[Array, Array, dict[int, float]]:
-    """Start and variances (states,), and the states that are neither read nor a speed, each with its rest under the first inputs."""
+def _first_guess(library: EffectLibrary, filter_input: FilterInput) -> tuple[Array, Array, list[int]]:
+    """Start and variances (states,), and the states that are neither read nor a speed, which are at rest under the first inputs.
+
+    A state may start as far from there as START_SHARE of what it does: an angle of the range of its readings, a speed of the largest that
+    they show, another state of its rest.
+    """
     model = library.bound.model
-    positions, x0 = {}, np.zeros(len(library.states))
-    p0 = np.full(len(library.states), 1e-12)
-    early = filter_input.t_s - filter_input.t_s[0] <= START_S
-    for place, (name, expression) in enumerate(model.outputs.items()):
-        y = filter_input.y[early, place]
-        good = np.isfinite(y)
-        if str(expression) not in library.states or not good.any():
-            continue
-        index = library.states.index(str(expression))
-        x0[index], p0[index] = y[good][0], decisions.START_ANGLE**2
-        slope = np.polyfit(filter_input.t_s[early][good], y[good], 1)[0] if good.sum() > 2 else 0.0
-        positions[str(expression)] = (name, float(slope))
-    speeds = {str(axis.velocity): str(axis.position) for axis in model.axes}
+    x0, farthest = np.zeros(len(library.states)), np.zeros(len(library.states))
+    read, speeds = dict[str, tuple[float, float]](), {str(axis.velocity): str(axis.position) for axis in model.axes}
+    for place, expression in enumerate(model.outputs.values()):
+        good = np.isfinite(filter_input.y[:, place])
+        if str(expression) in library.states and good.any():
+            index, error = library.states.index(str(expression)), float(np.sqrt(filter_input.single[place]))
+            t_s, y = filter_input.t_s[good], filter_input.y[good, place]
+            x0[index], farthest[index] = y[0], max(float(np.ptp(y)), error)
+            read[str(expression)] = _speeds(t_s, y, error)
     rest = _rest(library, filter_input, x0)
-    unread = {}
+    unread = []
     for index, state in enumerate(library.states):
-        if state in positions:
+        if state in read:
             continue
-        if state in speeds:
-            x0[index] = positions.get(speeds[state], ("", 0.0))[1]
-            p0[index] = decisions.START_SPEED**2
+        if speeds.get(state) in read:
+            x0[index], farthest[index] = read[speeds[state]]
         else:
-            x0[index] = unread[index] = float(rest[index])
-            p0[index] = (decisions.START_SHARE * max(abs(rest[index]), 0.5 * float(np.max(np.abs(rest))), 1e-3)) ** 2
-    return x0, p0, unread
+            x0[index] = rest[index]
+            farthest[index] = max(abs(rest[index]), 0.5 * float(np.max(np.abs(rest))), 1e-3)
+            unread.append(index)
+    return x0, np.maximum((decisions.START_SHARE * farthest) ** 2, 1e-12), unread
+
+
+def _speeds(t_s: Array, y: Array, error: float) -> tuple[float, float]:
+    """The first speed of readings y (n,) at t_s (n,) with such an `error`, and the largest, each over START_S."""
+    early = t_s - t_s[0] <= START_S
+    first = float(np.polyfit(t_s[early], y[early], 1)[0]) if early.sum() > 2 else 0.0
+    later = np.searchsorted(t_s, t_s + START_S - 1e-9)
+    inside = later < len(t_s)
+    ways = np.abs(y[later[inside]] - y[inside]) / (t_s[later[inside]] - t_s[inside])
+    return first, max(float(np.max(ways, initial=0.0)), error / START_S)
 
 
 def _likelihood(
