@@ -58,7 +58,7 @@ START_SHARE = Limit(
     "share of what a state does",
     "so far from where its first readings say it may start: an angle of the range that its readings show, a speed of the largest, what "
     "nobody reads of its rest under the first inputs",
-    "162 logs of sealed cases and recordings: of 28 states that half of their rest follows a little better 22 begin at it, 6 at none",
+    "162 logs of sealed cases and recordings: 183 of 229 unread states begin where none, half or all of their rest was best, 46 between",
 )
 
 # Priors of numbers (fit)

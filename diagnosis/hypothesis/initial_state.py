@@ -14,23 +14,26 @@ from logcheck.standing import RUN_UP_S
 Array = NDArray[np.float64]
 START_S = 0.1
 LONGEST_STEP_S = 0.01
+SHARES = np.arange(0.0, 1.0, 0.25).tolist()  # less apart than START_SHARE leaves open
 FIRST_REST_DOUBT = -1.7  # log10 s: how long friction about rest is in doubt, from where every fit of it starts
 
 
 def start_of(library: EffectLibrary, filter_input: FilterInput, locked: tuple[str, ...]) -> tuple[Array, Array]:
-    """Where a flight starts and its variances (states,): angles as first read, speeds as they then change, other states at rest under
-    the first inputs, or at zero where the plant then follows the first readings better."""
+    """Where a flight starts and its variances (states,): angles as first read, speeds as they then change, other states at the share of
+    their rest under the first inputs, from none to all, with which the plant follows the first readings best."""
     x0, p0, unread = _first_guess(library, filter_input)
     early = beginning(filter_input, decisions.UNTOLD_S)
     instants = len(early.t_s)
     early = replace(early, rows=instants, place=np.where(np.isfinite(early.y), np.arange(instants)[:, None], -1))
     value = _likelihood(library, early, x0, p0, locked)
     for index in unread:
-        other = x0.copy()
-        other[index] = 0.0
-        fitted = _likelihood(library, early, other, p0, locked)
-        if fitted > value:
-            x0, value = other, fitted
+        rest = x0[index]
+        for share in SHARES:
+            other = x0.copy()
+            other[index] = share * rest
+            fitted = _likelihood(library, early, other, p0, locked)
+            if fitted > value:
+                x0, value = other, fitted
     return x0, p0
 
 

@@ -73,7 +73,7 @@ def test_columns_in_other_rows_are_refused_by_name(
 
 def test_a_column_of_which_a_short_log_tells_little_is_told_and_not_refused(library: EffectLibrary, fly: Fly) -> None:
     # Truth: u_M_V stands one row late; the flight is long enough for 25 nats and too short for 50.
-    assert told(library, logged(fly(31, seconds=SECONDS), Misplaced((0,), 1))) == ["columns_late"]
+    assert told(library, logged(fly(31, seconds=SECONDS - 1.0), Misplaced((0,), 1))) == ["columns_late"]
 
 
 def test_commands_in_their_rows_are_not_doubted(library: EffectLibrary, fly: Fly) -> None:
