@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis import decisions
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.library.effect_library import EffectLibrary, effect_library
@@ -52,3 +53,14 @@ def test_readings_that_are_no_numbers_leave_a_start(library: EffectLibrary, flow
     x0, p0 = start_of(library, filter_input_of(blind, library.bound.plant, library.outputs), ())
     assert np.isfinite(x0).all()
     assert (p0 > 0.0).all()
+
+
+@pytest.mark.parametrize("size", [0.01, 0.3])
+def test_a_start_is_as_unsure_as_its_readings_move(library: EffectLibrary, flown: RunLog, size: float) -> None:
+    # Truth: both angles swing by +-size at 2 rad/s: a range of 2 size, speeds of 2 size a second, over 0.1 s 0.2 % less.
+    way = size * np.sin(2.0 * flown.t_s)
+    log = replace(flown, y=np.column_stack((way, way)), extra={})
+    _, p0 = start_of(library, filter_input_of(log, library.bound.plant, library.outputs), ())
+    sd = dict(zip(library.states, np.sqrt(p0), strict=True))
+    assert sd["psi_rad"] == pytest.approx(decisions.START_SHARE * 2.0 * size, rel=0.01)
+    assert sd["psi_dot_rad_s"] == pytest.approx(decisions.START_SHARE * 2.0 * size, rel=0.01)
