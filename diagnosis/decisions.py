@@ -28,6 +28,12 @@ MORE_THAN_ONE = Limit(
     "what comes in whole numbers is more than one: rows are missing, a count is no single one, a grid is coarser, a slip is no rounding",
     DEVELOPMENT,
 )
+SLOW_COUNTS = Limit(
+    0.5,
+    "counts per row",
+    "of faster motion whole rows do not tell how long a count lasted, so that an edge is passed later than they say",
+    "quiet development cases; an arm whose rotor warms up: with all counts it seems to have errors alike from row to row",
+)
 GRID_NATS = Limit(
     16.0, "nats", "a coarser grid's evidence beyond ln of the counts: of 900 random logs chance found a grid in five"
 )

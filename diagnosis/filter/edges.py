@@ -20,8 +20,8 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
 
     (2)  depth = v T / 4 = step / 2,  travel = v h = 2 step h / T
 
-    Of an output that travels a step in a row an edge tells no more than the count. Noise makes counts change to and fro beside an edge, so
-    that none of them tells when it was passed: where that is the likelier reason, readings stay what they were.
+    Of an output that travels more than SLOW_COUNTS in a row T is too few rows to tell that. Noise makes counts change to and fro beside an
+    edge, so that none of them tells when it was passed: where that is the likelier reason, readings stay what they were.
     """
     seen = np.flatnonzero(np.isfinite(y))
     moved = np.diff(y[seen])
@@ -36,7 +36,7 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
         return y, r
     travel = step * h / _shorter(lasts, signs)
     one_row = h < decisions.MORE_THAN_ONE * row
-    sharp = (np.abs(moved) < decisions.MORE_THAN_ONE * step) & one_row & (travel < step)
+    sharp = (np.abs(moved) < decisions.MORE_THAN_ONE * step) & one_row & (travel < decisions.SLOW_COUNTS * step)
     forward = np.clip(_speed(lasts, np.diff(edge)) * h * signs, 0.0, travel)
     found_y, found_r = y.copy(), r.copy()
     found_y[rows[sharp]] = (edge + 0.5 * forward * signs)[sharp]
@@ -48,8 +48,8 @@ def _noisy(lasts: Array, signs: Array) -> bool:
     """Whether noise is the likelier reason why counts are left where they were entered, by their lengths in rows `lasts` (k - 1,) and the
     ways of the k changes.
 
-    One is undone where it lasts two rows at most, after which (2) tells nothing. Noise undoes it as likely as not. A parabola that takes b
-    rows over the count before, and turns anywhere in this one, does with probability
+    One is undone where it lasts two rows at most, a travel of a step a row by (2). Noise undoes it as likely as not. A parabola that takes
+    b rows over the count before, and turns anywhere in this one, does with probability
 
     (3)  p = q^2 / (1 - q^2),  q = 1 / (1 + b)
     """
