@@ -123,7 +123,7 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     """
     begun = alone_of(seen)
     first = begun.best(decisions.ASKED)
-    seen, again = _yielding(seen, first, decisions.YIELDING_EARLY_SHARE * (first[0].evidence - seen.retuned.evidence))
+    seen, again = _yielding(seen, first, decisions.WORTH_REFINING * (first[0].evidence - seen.retuned.evidence))
     if again is not None:
         further = _searched(again)
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):

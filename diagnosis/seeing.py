@@ -132,11 +132,11 @@ def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
 
 
 def _over_noise(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
-    """Whether it is by far likelier, as dry friction is that they follow, and the rule."""
+    """Whether it is likelier, by as much as anything further must gain, and the rule."""
     gain = best.evidence - seen.retuned.evidence
-    stands = bool(best.effects) and gain > decisions.FAR_LIKELIER
+    stands = bool(best.effects) and gain > decisions.TAKEN_IN
     outcome = "a cause is looked for" if stands else "noise"
-    return decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.FAR_LIKELIER, outcome), stands
+    return decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.TAKEN_IN, outcome), stands
 
 
 def _still(seen: Seen) -> Seen | None:

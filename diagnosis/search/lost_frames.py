@@ -191,11 +191,11 @@ def _supposed(case: Case, filter_input: FilterInput, hypothesis: Hypothesis) -> 
 
 
 def _judged(filter_input: FilterInput) -> NDArray[np.uint8]:
-    """Whether each frame can be judged (rows,): not about rows that the log lacks, as nobody knows what was commanded there."""
+    """Whether each frame can be judged (rows,): not the two beside rows that the log lacks, as nobody knows for how long the one was held,
+    nor what the other's loss would hold."""
     judged = np.ones(filter_input.rows, dtype=np.uint8)
-    before, behind = decisions.ABOUT_MISSING_ROWS
     for row in np.flatnonzero(filter_input.untold_s):
-        judged[max(row + before, 0) : row + behind] = 0
+        judged[row : row + 2] = 0
     return judged
 
 

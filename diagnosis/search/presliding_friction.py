@@ -50,7 +50,7 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
         if gain > PROMISED_SHARE * (best - fitted.evidence)
     )
     yields = dict[str, Values]()
-    for _, place in promising[: -decisions.YIELDING_FITTED - 1 : -1]:
+    for _, place in promising[: -decisions.NEXT - 1 : -1]:
         fitted = found[place]
         hypothesis = _yielded(case, fitted.fit)
         ended = None if hypothesis is None else fit(case, hypothesis, rounds=4)
@@ -100,7 +100,7 @@ def _yielded(case: Case, found: Fit) -> Hypothesis | None:
         ways = list(_unstated(case, found.hypothesis, axis))
         if ways:
             fitted, reached = _likeliest(case, hypothesis, ways, value)
-            if reached > value + decisions.FAR_LIKELIER:
+            if reached > value + decisions.TAKEN_IN:
                 hypothesis, value = fitted, reached
     return hypothesis if value > found.log_likelihood else None
 

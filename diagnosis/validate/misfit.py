@@ -1,7 +1,5 @@
 """Does the plant, with all that was found, know these logs at all? Its predictions against those of somebody who knows nothing."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +17,7 @@ Array = NDArray[np.float64]
 def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     """RMS error of predictions by output, over the RMS change of the readings since each window's start: 1 is to know nothing.
 
-    Windows are of 1 s, or as long as an unstable plant lets an error of the start grow by `decisions.GROWN`: beyond, nobody knows more.
+    Windows are of 1 s, or of the time constant with which an unstable plant lets an error of the start grow: beyond, nobody knows more.
     Outputs that hardly move are left out: nothing could be known better than that they stand.
     """
     outputs = list(case.library.bound.model.outputs)
@@ -48,7 +46,7 @@ def _squares(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> tuple[A
 
 
 def foreseen_s(bound: BoundPlant, flight: FilteredLog) -> float:
-    """How long an error of the state takes to grow by `decisions.GROWN`, by the plant's fastest unstable pole where the log starts.
+    """The time constant with which an error of the state grows, of the plant's fastest unstable pole where the log starts.
 
     A window's second at most, and a few rows at least.
     """
@@ -57,5 +55,5 @@ def foreseen_s(bound: BoundPlant, flight: FilteredLog) -> float:
     with np.errstate(all="ignore"):
         A = reference(model).A(0.0, x0, u0, bound.p, np.zeros(len(model.axes)))
     fastest_rad_s = float(np.max(np.linalg.eigvals(A).real)) if np.all(np.isfinite(A)) else 0.0
-    grown_s = math.log(decisions.GROWN) / fastest_rad_s if fastest_rad_s > 0.0 else WINDOW_S
+    grown_s = 1.0 / fastest_rad_s if fastest_rad_s > 0.0 else WINDOW_S
     return min(WINDOW_S, max(grown_s, LEAST_ROWS * flight.step_s))

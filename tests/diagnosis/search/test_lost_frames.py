@@ -1,6 +1,7 @@
 """Commands lost on the line: their share from flights whose truth is known, nothing where none was lost."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from threading import Barrier
 
 import numpy as np
@@ -61,6 +62,18 @@ def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> Non
     case, fitted = losses(plant, fly(41))
     assert fitted is None
     assert loss_evidence(case, likely_share(case)) < decisions.TAKEN_IN
+
+
+def test_rows_that_a_log_lacks_are_no_lost_frames(plant: BoundPlant, fly: Fly) -> None:
+    # Truth: every command arrived; of each 40 rows one to three were not logged.
+    log = fly(41)
+    kept = np.arange(len(log.t_s)) % 40 >= 1 + np.arange(len(log.t_s)) // 40 % 3
+    found, fitted = losses(plant, replace(log, t_s=log.t_s[kept], u=log.u[kept], y=log.y[kept], extra={}))
+    assert fitted is None
+    assert loss_evidence(found, likely_share(found)) < decisions.TAKEN_IN
+    untold = np.flatnonzero(found.flights[0].filter_input.untold_s)
+    assert len(untold) > 30
+    assert not found.flights[0].filter_input.lost[np.concatenate((untold, untold + 1))].any()
 
 
 @pytest.mark.soak
