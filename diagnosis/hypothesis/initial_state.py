@@ -14,13 +14,12 @@ from logcheck.standing import RUN_UP_S
 Array = NDArray[np.float64]
 START_S = 0.1
 LONGEST_STEP_S = 0.01
-SHARES = np.arange(0.0, 1.0, 0.25).tolist()  # less apart than START_SHARE leaves open
 FIRST_REST_DOUBT = -1.7  # log10 s: how long friction about rest is in doubt, from where every fit of it starts
 
 
 def start_of(library: EffectLibrary, filter_input: FilterInput, locked: tuple[str, ...]) -> tuple[Array, Array]:
-    """Where a flight starts and its variances (states,): angles as first read, speeds as they then change, other states at the share of
-    their rest under the first inputs, from none to all, with which the plant follows the first readings best."""
+    """Where a flight starts and its variances (states,): angles as first read, speeds as they then change, other states at rest under
+    the first inputs, or short of it where the plant then follows the first readings better."""
     x0, p0, unread = _first_guess(library, filter_input)
     early = beginning(filter_input, decisions.UNTOLD_S)
     instants = len(early.t_s)
@@ -28,7 +27,7 @@ def start_of(library: EffectLibrary, filter_input: FilterInput, locked: tuple[st
     value = _likelihood(library, early, x0, p0, locked)
     for index in unread:
         rest = x0[index]
-        for share in SHARES:
+        for share in decisions.REST_SHARES:
             other = x0.copy()
             other[index] = share * rest
             fitted = _likelihood(library, early, other, p0, locked)
