@@ -34,13 +34,16 @@ def gaps(t_s: Array) -> Rows:
 
 
 def break_findings(log: RunLog, name: str) -> Iterator[Found]:
-    """Notes on inputs that begin late, on other recordings in the file, and on stretches without rows, behind which the log goes on as
-    another one."""
+    """Notes on inputs that begin late, on stamps too coarse to tell rows apart, on rows out of order, on other recordings in the file, and
+    on stretches without rows, behind which the log goes on as another one."""
     for late in log.late_inputs:
         sentence = (
             f"{late.column} begins at {late.begins_s:.6g} s: {in_words(late.rows, 'row')} in front of it left out"
         )
         yield Found(Finding("late_input", name, late.column, late.begins_s, late.begins_s, sentence, rows=late.rows))
+    if log.spread:
+        span = (float(log.t_s[0]), float(log.t_s[-1]))
+        yield Found(Finding("coarse_stamps", name, "t_s", *span, f"t_s: {log.spread.told}", rows=log.spread.rows))
     if log.disordered:
         count, first_s = log.disordered.rows, log.disordered.first_s
         sentence = f"t_s: {in_words(count, 'row')} whose time does not rise, first at {first_s:.6g} s; left out"

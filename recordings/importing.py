@@ -9,7 +9,7 @@ import numpy as np
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.formats import table
-from recordings.joined import from_the_inputs, in_order, in_own_rows, on_one_clock
+from recordings.joined import from_the_inputs, in_order, in_own_rows, on_one_clock, with_own_times
 from recordings.mapping.automatic import ambiguous, automatic
 from recordings.mapping.columns import Column, column
 from recordings.mapping.mapping import ColumnMapping
@@ -62,6 +62,7 @@ def log_of_contents(
     channels, held = in_own_rows({name: entry.channel for name, entry in found.items()}, columns)
     channels, counted = on_one_clock(channels)
     channels, shift = _from_the_first(channels)
+    channels, spread = with_own_times(channels, columns, where)
     channels, late = in_order(channels, columns, span or Span())
     part, before = from_the_inputs(channels, columns, span or Span())
     stated = mapping.loop or facts.get("loop")
@@ -75,7 +76,7 @@ def log_of_contents(
     )
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
-    told += [*held, *counted, *late, *before]
+    told += [*held, *counted, *spread, *late, *before]
     return Imported(log, used, (*told, *_missing(log), *_doubtful(log, of)))
 
 

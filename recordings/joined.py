@@ -8,6 +8,7 @@ import numpy as np
 from recordings.channels import Array, Channel, Span, taken
 from recordings.signals import counted
 from records.log import LogColumns
+from records.logs.coarse_stamps import own_times
 from records.logs.restarts import pause_s, restart_rows
 
 SPARSE = 0.3  # of a column without a number: of two rates the nearest that loggers write into one table are 3 to 2, a third without
@@ -92,10 +93,32 @@ def _counted_on(
     return shifts, begins
 
 
+def with_own_times(
+    channels: Mapping[str, Channel], columns: LogColumns, where: str
+) -> tuple[dict[str, Channel], list[str]]:
+    """The channels with a time for each sample where stamps are too coarse to tell them apart, and what is to be said of it.
+
+    What was logged on the clock of an output moves with it. Raises BadInput where nothing tells how far apart samples are.
+    """
+    moved, told = dict(channels), dict[str, None]()
+    for name in columns.outputs:
+        clock = moved[name].t_s
+        if clock is None or not np.isfinite(clock).all():
+            continue
+        beside = [other for other, c in moved.items() if c.t_s is not None and np.array_equal(c.t_s, clock)]
+        readings = np.column_stack([moved[other].values for other in beside if other in columns.outputs])
+        t_s, spread = own_times(clock, readings, where)
+        if spread is not None:
+            told[f"{', '.join(beside)}: {spread.told}"] = None
+            moved |= {other: Channel(t_s, moved[other].values, moved[other].faults) for other in beside}
+    return moved, list(told)
+
+
 def in_order(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -> tuple[dict[str, Channel], list[str]]:
     """The outputs without samples whose time does not rise within the span, and what is to be said of them.
 
-    As they are where these are half and more: then the clock is no clock. What holds its last value may be in any order.
+    As they are where these are half and more, not counting rows written twice: then the clock is no clock. What holds its last value
+    may be in any order.
     """
     kept, told = dict(channels), []
     for name in columns.outputs:
@@ -104,7 +127,8 @@ def in_order(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -
             continue
         late = np.concatenate([[False], channel.t_s[1:] <= np.maximum.accumulate(channel.t_s)[:-1]])
         late &= span.holds(channel.t_s)
-        if late.any() and late.sum() < 0.5 * late.size:
+        again = np.concatenate([[False], (np.diff(channel.t_s) == 0.0) & (np.diff(channel.values) == 0.0)])
+        if late.any() and (late & ~again).sum() < 0.5 * late.size:
             kept[name] = taken(channel, ~late)
             first_s = channel.t_s[late][0]
             told.append(

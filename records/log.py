@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.files import demand_writable, write_atomic
 from records.logs.clock import demand_seconds
+from records.logs.coarse_stamps import Spread, own_times
 from records.logs.restarts import Restart, counted_on, on_one_clock, restart_rows
 from records.logs.source import Source, parse_source, source_table
 from records.text import checks
@@ -65,7 +66,7 @@ class RunLog:
     `arithmetic` in which its law computed: DOUBLE is a simulation's own, in which no firmware flew; None where nobody said.
     `source` the published recording that the log was imported from, None for a log of this project's own making; `restarts` are where
     another recording of the same file begins, whose times are counted on; `late_inputs` begin behind a recording's first row;
-    `disordered` are rows of the file that were left out.
+    `disordered` are rows of the file that were left out, `spread` those whose stamps were too coarse to tell them apart.
     """
 
     columns: LogColumns
@@ -83,6 +84,7 @@ class RunLog:
     restarts: tuple[Restart, ...] = ()
     late_inputs: tuple[LateInput, ...] = ()
     disordered: Disordered | None = None
+    spread: Spread | None = None
 
     def column(self, name: str) -> Array:
         """The column called `name`, shape (n,); raises KeyError for one that is not there."""
@@ -161,7 +163,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are, and times that begin again count on.
 
     Rows in front of an input's first number are left out, as nobody knows what moved the plant there, and a few whose time does not
-    rise. Raises BadInput naming file, line
+    rise; samples of one stamp get times of their own where the number of rows tells them. Raises BadInput naming file, line
     and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated row, a number that is none, time
     that does not increase, an input that is not finite, a time in another unit.
     """
@@ -172,6 +174,8 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     data = {name: rows[:, index] for index, name in enumerate(names)}
     begins = restart_rows(data["t_s"])
     data["t_s"], restarts = on_one_clock(data["t_s"])
+    readings = np.column_stack([data[name] for name in columns.outputs])
+    data["t_s"], spread = own_times(data["t_s"], readings, str(path))
     kept, late_inputs = _from_the_inputs(data, begins, columns)
     rising = _rising(data["t_s"])
     disordered = Disordered(int((~rising).sum()), float(data["t_s"][~rising][0])) if not rising.all() else None
@@ -197,12 +201,17 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         restarts=restarts,
         late_inputs=late_inputs,
         disordered=disordered,
+        spread=spread,
     )
 
 
 def _rising(t_s: Array) -> NDArray[np.bool_]:
-    """Rows (n,) whose time is later than all before; all where more than MOST_DISORDERED are not, as then the clock is no clock."""
-    rising = np.concatenate([[True], t_s[1:] > np.maximum.accumulate(t_s)[:-1]])
+    """Rows (n,) whose time is later than all before, of one time the last, whose command holds; all rows where more than MOST_DISORDERED
+    are not, as then the clock is no clock."""
+    ends = np.flatnonzero(np.diff(t_s, append=np.inf) != 0.0)
+    first = np.concatenate([[True], t_s[1:] > np.maximum.accumulate(t_s)[:-1]])
+    rising = np.zeros(len(t_s), bool)
+    rising[ends[np.searchsorted(ends, np.flatnonzero(first))]] = True
     few = bool(np.isfinite(t_s).all()) and float((~rising).mean()) <= MOST_DISORDERED
     return rising if few else np.ones(len(t_s), bool)
 

@@ -77,6 +77,17 @@ def test_a_few_rows_out_of_order_are_no_recording_and_left_out(
     assert f"t_s: {told}" in [found.sentence for found in examine([read], PLANT, names=["log"]).findings]
 
 
+def test_stamps_coarser_than_the_rows_lose_no_sample_and_no_command(tmp_path: Path) -> None:
+    """Truth: rows 0.5 ms apart whose file has their milliseconds; readings and commands of all are kept, and it is told."""
+    log = log_of(2000)
+    log = replace(log, sample_period_s=0.0005, t_s=np.floor(np.arange(2000) * 0.5) * 1e-3)
+    read = load_log(in_one_file(tmp_path, log), log.columns)
+    np.testing.assert_array_equal(np.hstack([read.y, read.u]), np.hstack([log.y, log.u]))
+    np.testing.assert_allclose(read.t_s, 0.0005 * np.arange(2000), atol=1e-3)
+    assert np.diff(read.t_s) == pytest.approx(0.0005, rel=1e-3)
+    assert "coarse_stamps" in {found.kind for found in examine([read], PLANT, names=["log"]).findings}
+
+
 @pytest.mark.parametrize("rows", [[*range(300)][::-1], [*range(100), *range(60, 160), *range(120, 300)]])
 def test_more_than_a_tenth_of_the_rows_out_of_order_are_refused(rows: list[int], tmp_path: Path) -> None:
     log = log_of(300)

@@ -9,6 +9,7 @@ from scipy.io import savemat
 from recordings.channels import Span
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
+from records.logs.coarse_stamps import own_times
 from tests.recordings.here import imported_here
 from tests.recordings.runs import RUN, T_S, save_run
 
@@ -54,20 +55,67 @@ def test_ticks_that_ran_over_and_dates_in_days_become_seconds(
     np.testing.assert_allclose(log.t_s, first_s + T_S, atol=2e-5)  # a double holds a date's days to 1e-5 s
 
 
-def test_samples_whose_time_does_not_rise_are_left_out_and_a_clock_that_mostly_stands_is_refused(
+def test_samples_whose_time_goes_back_are_left_out_and_one_that_bears_the_stamp_before_gets_its_own(
     tmp_path: Path,
 ) -> None:
+    """Truth: samples 10 ms apart; sample 7 bears the stamp of sample 6, sample 30 that of sample 20."""
     stamps = T_S.copy()
     stamps[[7, 30]] = stamps[6], stamps[20]
     savemat(tmp_path / "run.mat", {**RUN, "t_s": stamps})
     done = imported_here(tmp_path / "run.mat", ColumnMapping())
-    np.testing.assert_array_equal(done.log.t_s, np.delete(T_S, [7, 30]))
-    assert "psi_rad: 2 samples whose time does not rise left out, first at 0.06 s" in done.found
-    savemat(tmp_path / "run.mat", {**RUN, "t_s": np.floor(T_S * 20.0) / 20.0})
-    with pytest.raises(
-        BadInput, match=r"expected times that increase; say --column t_s=0\.00918367\*row for rows so far apart"
-    ):
+    np.testing.assert_allclose(done.log.t_s, np.delete(T_S, 30), atol=1e-9)
+    np.testing.assert_array_equal(done.log.y[:, 0], np.delete(RUN["psi_rad"], 30))
+    assert "psi_rad: 1 sample whose time does not rise left out, first at 0.2 s" in done.found
+    (told,) = [told for told in done.found if "bear the stamp" in told]
+    assert "1 row bear" in told
+
+
+LATE_S = np.arange(4000) * 0.0005
+
+
+@pytest.mark.parametrize(
+    ("stamps", "begins_s"),
+    [
+        (np.floor(LATE_S * 1e3) / 1e3, 0.0),  # 1 ms at 2 kHz
+        (np.round(LATE_S * 1e3 * 0.7) / 1e3 / 0.7, 0.0),  # a grid that rows do not fall on evenly
+        (np.array([float(f"{t:.4g}") for t in 99.0 + LATE_S]) - 99.0, 0.0),  # 10 ms, from 100 s on 100 ms
+        (np.floor((LATE_S + 0.0137) * 10.0) / 10.0, 0.0137),  # written by the tenth of a second, begun within one
+    ],
+)
+def test_stamps_coarser_than_the_rows_give_each_row_its_own_time(stamps: np.ndarray, begins_s: float) -> None:
+    """Truth: samples 0.5 ms apart; each is found within one step of its stamps, and their spacing within a thousandth."""
+    psi_rad = np.sin(np.arange(4000) / 90.0)
+    t_s, spread = own_times(stamps, psi_rad[:, None], "log.csv")
+    assert spread is not None
+    assert spread.rows == 4000 - len(set(stamps))
+    step_s = np.diff(np.unique(stamps)).max()
+    np.testing.assert_allclose(t_s, LATE_S + begins_s, atol=step_s)
+    assert np.diff(t_s).min() > 0.0
+    assert spread.period_s == pytest.approx(0.0005, rel=1e-3)
+
+
+def test_rows_written_twice_are_no_samples_and_samples_in_bursts_without_rhythm_are_refused(tmp_path: Path) -> None:
+    """Truth: every sample stands twice, the second time with its own command; then 1 to 12 samples to a stamp by chance."""
+    twice = np.repeat(np.arange(50), 2)
+    again = {name: values[twice] for name, values in RUN.items()} | {"u_T_V": np.tile([1.0, 2.0], 50)}
+    savemat(tmp_path / "run.mat", again)
+    log = imported_here(tmp_path / "run.mat", ColumnMapping()).log
+    np.testing.assert_array_equal(log.t_s, T_S)
+    np.testing.assert_array_equal(log.u[:, 1], 2.0)
+    chance = np.repeat(np.arange(60) * 0.01, np.random.default_rng(1).integers(1, 13, 60))
+    psi_rad = np.sin(np.arange(len(chance)) / 9.0)
+    savemat(tmp_path / "run.mat", {**RUN, "u_M_V": 0 * psi_rad, "u_T_V": 0 * psi_rad, "psi_rad": psi_rad,
+                                   "phi_rad": psi_rad, "t_s": chance})  # fmt: skip
+    with pytest.raises(BadInput, match=r"from 1 to 12 to a stamp: nothing tells how far apart .*t_s=PERIOD\*row"):
         imported_here(tmp_path / "run.mat", ColumnMapping())
+
+
+def test_a_gap_in_a_log_of_coarse_stamps_stays_a_gap() -> None:
+    """Truth: 2 kHz with stamps of 1 ms, one second lost."""
+    true_s = np.concatenate([LATE_S, LATE_S + 3.0])
+    t_s, spread = own_times(np.floor(true_s * 1e3) / 1e3, np.sin(true_s * 9.0)[:, None], "log.csv")
+    assert spread is not None
+    np.testing.assert_allclose(t_s, true_s, atol=1e-3)
 
 
 def test_rows_minutes_apart_by_the_dates_of_a_file_are_not_remarked(tmp_path: Path) -> None:
