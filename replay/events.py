@@ -160,6 +160,8 @@ class Follower:
         return max(choice, key=lambda entry: entry[0], default=(0, None))[1]
 
     def _hypotheses(self, row: int, state: Any, last_gap: _Gap | None) -> Iterator[_Hypothesis]:
+        if row == 0:
+            yield from self._begun()
         if row == len(self.inputs) or row == 0:
             return
         yield from self._never_read(row, state)
@@ -174,6 +176,17 @@ class Follower:
             yield from self._given(state, (row, row + 1), candidates_for_unmeasured(self._flight, row))
         if last_gap is not None and row <= last_gap[1][1] + 2:
             yield from self._not_logged(row, last_gap)
+
+    def _begun(self) -> Iterator[_Hypothesis]:
+        """Behind the first row, where angles that it lacks are those from which the law started, and which it answered."""
+        gaps = np.isnan(self.inputs[0])
+        if not gaps.any():
+            return
+        for candidate in candidates_for_unmeasured(self._flight, 0):
+            given = np.where(gaps, candidate.astype(self.inputs.dtype), self.inputs[:1])
+            state = self._law.start(given[0, self._loops :])
+            if self._law.run(state, (0, 1), given, *self._between(0, 1)) == 1:
+                yield _Hypothesis(UNLOGGED, 0, 1, state)
 
     def _never_read(self, row: int, state: Any) -> Iterator[_Hypothesis]:
         """A zero in a column that lacks readings: it may have been written down for none, beside zero where nobody sees it."""

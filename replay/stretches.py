@@ -17,7 +17,8 @@ from records.table import ControllerTable
 from records.text.units import units_of
 from replay import thresholds
 from replay.arithmetic import replayed
-from replay.events import Workshop
+from replay.beginning import other_beginnings
+from replay.events import UNLOGGED, Workshop
 from replay.firmware import CLEARED, NOT_FOUND, FirmwareReplay, demand_own, replay_firmware
 from replay.flight import flight_of, has_replayable_columns
 from replay.midair import begins_in_flight
@@ -42,10 +43,14 @@ def replay_stretches(
     """`replay_firmware` of a log that is cut where rows or readings are missing, and in front of the rows `begins` (n,).
 
     Where no firmware gives what the log holds from within a stand of a sensor on, the stand's readings are left out: if the law goes on
-    behind it, it had others.
+    behind it, it had others. So are the first ones, where already the first answer differs.
     """
     demand_own(log, table)
     first, _ = found, followed = _by_stretches(log, table, others, begins)
+    if found.first_difference_s == log.t_s[0] and found.cause not in CLEARED:
+        begun = _otherwise_begun(log, table, others, begins)
+        if begun is not None:
+            return begun
     told: list[str] = []
     while found.cause == NOT_FOUND and len(told) < thresholds.MOST_STANDS:
         stand = _stand(log, table, found.first_difference_s)
@@ -57,6 +62,20 @@ def replay_stretches(
     if not told or found.cause not in CLEARED or not followed:
         return first
     return replace(found, sentence="; ".join([*told, found.sentence or ""]))
+
+
+def _otherwise_begun(
+    log: RunLog, table: ControllerTable, others: Sequence[ControllerTable], begins: Rows | None
+) -> FirmwareReplay | None:
+    """What clears the firmware if it had another first reading or reference than the log holds; None where nothing does."""
+    if not has_replayable_columns(log, table):
+        return None
+    for other, told in other_beginnings(log, table):
+        found, followed = _by_stretches(other, table, others, begins)
+        if followed and (found.bit_exact or found.cause in CLEARED):
+            sentence = "; ".join([told, found.sentence or "with it every bit agrees"])
+            return replace(found, bit_exact=False, cause=UNLOGGED, sentence=sentence)
+    return None
 
 
 def _stand(log: RunLog, table: ControllerTable, at_s: float | None) -> tuple[RunLog, str] | None:

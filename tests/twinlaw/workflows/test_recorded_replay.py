@@ -4,8 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from records.log import save_log
+from records.log import RunLog, save_log
 from tests.law_tables import ce150_table
 from tests.replay.firmware_flights import own, plant
 from twinlaw.workflows.chain.verifying import recorded_replay
@@ -31,3 +32,35 @@ def test_readings_of_zero_that_the_log_check_leaves_out_are_not_laid_on_the_firm
     replay, said = recorded_replay(tmp_path / "zeros.csv", ce150_table(), plant())
     assert replay.sent is None
     assert "the firmware is cleared" in (said or "")
+
+
+@pytest.mark.parametrize(
+    ("column", "rows", "value", "told"),
+    [
+        ("psi_rad", 1, np.nan, "the log lacks a sample that the firmware had, first at 0 s"),
+        ("psi_rad", 1, 0.05, "the firmware is cleared"),
+        ("phi_rad", 3, 0.3, "phi_rad is 0.3 in the first 3 rows, where the law had another value"),
+        ("psi_ref_rad", 1, 0.25, "psi_ref_rad is 0.25 in the first row, where the law had another value"),
+    ],
+)
+def test_a_wrong_first_value_that_the_law_did_not_have_fails_no_verification(
+    column: str, rows: int, value: float, told: str, tmp_path: Path
+) -> None:
+    """Truth: the law's commands are the log's, and one of its angles or references is wrong in the first rows."""
+    save_log(tmp_path / "wrong.csv", begun_with(column, rows, value))
+    replay, said = recorded_replay(tmp_path / "wrong.csv", ce150_table(), plant())
+    assert replay.sent is None
+    assert told in (said or "")
+
+
+def test_a_wrong_first_command_fails_the_verification(tmp_path: Path) -> None:
+    save_log(tmp_path / "wrong.csv", begun_with("u_M_V", 1, 3.0))
+    assert recorded_replay(tmp_path / "wrong.csv", ce150_table(), plant())[0].sent is not None
+
+
+def begun_with(column: str, rows: int, value: float) -> RunLog:
+    """An own flight whose column begins with another value."""
+    log = own()
+    log = replace(log, u=log.u.copy(), y=log.y.copy(), extra={name: v.copy() for name, v in log.extra.items()})
+    log.column(column)[:rows] = value
+    return log

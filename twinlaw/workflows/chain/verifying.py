@@ -179,12 +179,15 @@ def recorded_replay(
     replay = replay_of(log, table, path, arithmetic)
     if replay.sent is None or not has_replayable_columns(log, table):
         return replay, None
-    begins = None
+    begins, unread = None, False
     if log.columns == log_columns(bound.model):
         found = examine([log], bound, names=[path.stem])
         demand_log(found, OTHER_UNITS)
-        log, begins = as_read(log, found.logs[0]), found.logs[0].begins
+        log, begins, unread = as_read(log, found.logs[0]), found.logs[0].begins, bool(found.logs[0].unread.any())
     replayed = replay_stretches(log, table, begins=begins)
+    if replayed.bit_exact and unread:
+        said = "with the readings that the law had in place of those that were left out, every bit agrees"
+        return replace(replay, sent=None), f"{path.name}: {said}; its inputs are not compared bit by bit"
     if replayed.cause not in CLEARED:
         return replay, None if replayed.cause is None else f"{path.name}: {replayed.sentence}"
     return replace(replay, sent=None), f"{path.name}: {replayed.sentence}; its inputs are not compared bit by bit"
