@@ -106,7 +106,7 @@ def _dead(
     )  # as far as in one sample, where rows lie further apart
     way = max(thresholds.WAY_ROWS, round(thresholds.WAY_S / period_s))
     stands = runs(values)
-    never_repeats = _repeats(values, stands) < thresholds.SELDOM and _is_noisy(moves)
+    never_repeats = hardly_repeats(values, stands)
     for begin, end in stands:
         into = float(moves[begin - 1]) if begin else 0.0
         out = float(moves[end]) if end < len(moves) else 0.0
@@ -121,9 +121,7 @@ def _dead(
         arrives = _is_under_way(np.abs(arrived), least)
         driven = _moves_far(u[begin : end + 1], usual_u)
         goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
-        set_going = _moves_far(u[max(begin, end - way) : end + 2], usual_u) and not _moves_far(
-            u[begin : end - way + 1], usual_u
-        )
+        set_going = is_set_going(u, begin, end, way, usual_u)
         starts = not has_mass and set_going and not arrives  # a rate leaves its rest by its largest move
         leaps = (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (
             leaps_out and goes_on and not starts
@@ -135,6 +133,11 @@ def _dead(
             took_s = float(t_s[begin] - t_s[max(0, begin - len(arrived))])
             speed = float(np.abs(arrived).sum()) / took_s if arrives and not leaps_in else 0.0
             yield Stand(begin, end, abs(into) * leaps_in, abs(out) * leaps_out, speed)
+
+
+def is_set_going(u: Array, begin: int, end: int, way: int, usual_u: Array) -> bool:
+    """Whether an input (n, inputs) moves far in the last `way` rows of the stand begin..end, and not in those before."""
+    return _moves_far(u[max(begin, end - way) : end + 2], usual_u) and not _moves_far(u[begin : end - way + 1], usual_u)
 
 
 def _moves_far(u: Array, usual_u: Array) -> bool:
@@ -155,12 +158,12 @@ def _is_cut_off(
     rows = end - begin + 1
     both = thresholds.CUT_OFF_STEPS * least, min(rows, max(thresholds.CUT_OFF_ROWS, way))
     alone = thresholds.CUT_OFF_ALONE_STEPS * least, min(rows // 2, way)
-    comes = [_evenness(t_s, values, begin, -1, *limits, begins) for limits in (both, alone)]
-    goes = _evenness(t_s, values, end + 1, 1, *both, begins)
+    comes = [evenness(t_s, values, begin, -1, *limits, begins) for limits in (both, alone)]
+    goes = evenness(t_s, values, end + 1, 1, *both, begins)
     return (not set_going and min(comes[0], goes) > thresholds.EVEN) or comes[1] > thresholds.EVEN
 
 
-def _evenness(t_s: Array, values: Array, at: int, way: int, far: float, most_rows: int, begins: Rows) -> float:
+def evenness(t_s: Array, values: Array, at: int, way: int, far: float, most_rows: int, begins: Rows) -> float:
     """How fast a column is in the rows next to `at` as a share of how fast it is in as many rows beyond them; 0 for none.
 
     The rows are as few as it takes to go `far`, `most_rows` at most.
@@ -184,6 +187,11 @@ def runs(values: Array) -> list[tuple[int, int]]:
     first, last = np.concatenate([[0], changed + 1]), np.concatenate([changed, [len(values) - 1]])
     long = last - first >= thresholds.DEAD_ROWS - 1
     return list(zip(first[long].tolist(), last[long].tolist(), strict=True))
+
+
+def hardly_repeats(values: Array, stands: list[tuple[int, int]]) -> bool:
+    """Whether a sensor is so noisy that it hardly ever reads the same twice outside the stands, first and last rows."""
+    return _repeats(values, stands) < thresholds.SELDOM and _is_noisy(np.diff(values))
 
 
 def _repeats(values: Array, stands: list[tuple[int, int]]) -> float:

@@ -112,7 +112,7 @@ def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> I
     if any(entry.finding.severity == REFUSE for entry in own):
         return
     yield from break_findings(log, name)
-    own = list(value_findings(log, name, facts.steps, facts.positions))
+    own = list(value_findings(log, name, facts.steps, facts.positions, facts.stops))
     yield from own
     if any(entry.finding.severity == REFUSE for entry in own):
         return

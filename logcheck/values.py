@@ -2,10 +2,12 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
 from logcheck import thresholds
+from logcheck.clipped import clipped_findings
 from logcheck.dead import dead_findings, read_again
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.held import held_findings
@@ -72,9 +74,13 @@ def excitations(log: RunLog, steps: Mapping[str, float]) -> dict[str, Excitation
 
 
 def value_findings(
-    log: RunLog, name: str, steps: Mapping[str, float], positions: Collection[str] = ()
+    log: RunLog,
+    name: str,
+    steps: Mapping[str, float],
+    positions: Collection[str] = (),
+    stops: Mapping[str, tuple[float, float]] = MappingProxyType({}),
 ) -> Iterator[Found]:
-    """What is odd about the numbers, whatever the plant; `positions` are outputs that a mass moves."""
+    """What is odd about the numbers, whatever the plant; `positions` are outputs that a mass moves, `stops` where it is stopped."""
     yield from _missing_numbers(log, name)
     wrapped = list(wrap_findings(log, name, steps, positions))
     yield from wrapped
@@ -93,6 +99,9 @@ def value_findings(
     begins: Rows = np.zeros(len(log.t_s), bool)
     for found in seams:
         begins |= begins if found.begins is None else found.begins
+    clipped = list(clipped_findings(log, name, steps, begins, positions, stops))
+    yield from clipped
+    log = _without(log, clipped)
     held = list(held_findings(log, name))
     dead = held or list(dead_findings(log, name, steps, begins, positions))
     yield from dead

@@ -67,11 +67,12 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
 
 
 def _replayed(log: RunLog, path: Path, looked: LogIntegrity) -> FirmwareReplay | None:
-    """The firmware run again on what it was given: what was read or, where that is not it, all that was logged."""
-    found = replay_log(as_read(log, looked), path, begins=looked.begins)
-    if looked.unread.any() and differs(None if found is None else found.record()):
-        return replay_log(log, path, begins=looked.begins)
-    return found
+    """The firmware run again on what it was given: all that was logged or, where that is not it, what was read."""
+    whole = replay_log(log, path, begins=looked.begins)
+    if whole is None or whole.bit_exact or not looked.unread.any():
+        return whole
+    read = replay_log(as_read(log, looked), path, begins=looked.begins)
+    return whole if differs(None if read is None else read.record()) else read
 
 
 def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> ControllerTable | None:
