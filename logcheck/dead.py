@@ -44,11 +44,16 @@ def read_again(log: RunLog) -> Rows:
 
 
 def dead_findings(
-    log: RunLog, name: str, steps: Mapping[str, float], begins: Rows, positions: Collection[str] = ()
+    log: RunLog,
+    name: str,
+    steps: Mapping[str, float],
+    begins: Rows,
+    positions: Collection[str] = (),
+    again: Rows | None = None,
 ) -> Iterator[Found]:
     """The stands of each output that no axis makes, whose readings are left out; with the rows `begins` (n,) another log begins.
 
-    `positions` are outputs that a mass moves.
+    `positions` are outputs that a mass moves. Where all outputs are read `again` (n,), the link had failed: what follows is another log.
     """
     for column in log.columns.outputs:
         step = steps.get(column, 0.0)
@@ -66,7 +71,12 @@ def dead_findings(
         told = [_in_words(stand, t_s, values, column, step) for stand in stands[:SHOWN]]
         more = f"; and so {len(stands) - SHOWN} times more, last until {span[1]:.6g} s" if len(stands) > SHOWN else ""
         sentence = f"{column} stands {'; '.join(told)}{more}: the sensor was not read; left out"
-        yield Found(Finding("dead_stretch", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
+        behind = [present[stand.last] + 1 for stand in stands if present[stand.last] + 1 < len(log.t_s)]
+        other: Rows = np.zeros(len(log.t_s), bool)
+        other[[row for row in behind if again is not None and again[row]]] = True
+        if other.any():
+            sentence += ", and what follows, where all are read again, is used as another log"
+        yield Found(Finding("dead_stretch", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread, other)
 
 
 def amount(move: float, column: str, step: float) -> str:

@@ -1,7 +1,8 @@
 """Several recordings in one file: where one ends and the next begins, outputs leap, which no motion does.
 
 Where every output leaps, that is enough. Where one does and the others happen to stand where they stood, its sensor may have slipped: but a
-slip moves no reference, no input in an open loop, and leads back to the log's first row by no chance.
+slip moves no reference, no input in an open loop, and leads back to the log's first row by no chance;
+and it makes no axis faster or slower. Where none of it tells, both are said.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -27,22 +28,63 @@ def seam_findings(
     moving = [column for column in log.columns.outputs if _moves(log.column(column))]
     if not moving:
         return
-    passed_s = _passed_s(log, moving)
-    leaps = {
-        column: _leaps(log.column(column), passed_s, log.sample_period_s, steps.get(column, 0.0)) for column in moving
-    }
+    passed_s, apart_s = _passed_s(log, moving), np.diff(log.t_s)
+    near = {column: _leaps(log, column, passed_s, steps, 0.0) for column in moving}
+    usual = thresholds.USUAL_SPEED_PERCENT
+    alone = _alone({column: _leaps(log, column, passed_s, steps, usual) for column in moving}, log, positions)
+    at_once = _alone({column: _leaps(log, column, apart_s, steps, 0.0) for column in moving}, log, positions)
     rows: Rows = np.zeros(len(log.t_s) - 1, bool)
     if len(moving) > 1:
-        rows |= np.all(list(leaps.values()), axis=0)
-    alone = np.any(
-        [_not_back(leaps[column], log.column(column)) for column in moving if column in positions] or [rows], axis=0
-    )
-    rows |= alone & (_new_references(log, steps) | _new_inputs(log) | _as_at_first(log, steps))
+        rows |= np.all(list(near.values()), axis=0)
+    rows |= alone & (_new_inputs(log) | _new_motion(log, positions, steps))
     rows &= ~read_again[1:]
+    rows |= at_once & (_new_references(log, steps) | _as_at_first(log, steps))  # at rest a rig stands too before
     if rows.any():
         first = int(np.argmax(rows))
-        leaping = [column for column in moving if leaps[column][first]]
+        leaping = [column for column in moving if _leaps(log, column, apart_s, steps, 0.0)[first]]
         yield _found(log, name, leaping, len(leaping) == len(moving) > 1, steps, np.flatnonzero(rows) + 1)
+    for column in (column for column in moving if column in positions):
+        lone = _beside_stands(_leaps(log, column, passed_s, steps, usual), log.column(column)) & ~rows & ~read_again[1:]
+        if lone.any():
+            yield _either(log, name, column, int(np.argmax(lone)) + 1, steps)
+
+
+def _beside_stands(leaps: Rows, values: Array) -> Rows:
+    """The leaps (n - 1,) of a column but for those into or out of a stand, of which dead stretches tell."""
+    kept = leaps.copy()
+    for first, last in runs(values):
+        kept[[max(0, first - 1), min(last, len(leaps) - 1)]] = False
+    return kept
+
+
+def _either(log: RunLog, name: str, column: str, row: int, steps: Mapping[str, float]) -> Found:
+    at_s, move = float(log.t_s[row]), abs(float(log.column(column)[row] - log.column(column)[row - 1]))
+    sentence = (
+        f"{column} alone leaps at {at_s:.6g} s, by {amount(move, column, steps.get(column, 0.0))}: its sensor slipped, or another "
+        "recording begins there; nothing else in the log tells which, and it is used as one"
+    )
+    return Found(Finding("lone_leap", name, column, at_s, at_s, sentence))
+
+
+def _alone(leaps: Mapping[str, Rows], log: RunLog, positions: Collection[str]) -> Rows:
+    """Rows (n - 1,) behind which a position leaps, and not into a stand and out of it."""
+    own = [_not_back(leaps[column], log.column(column)) for column in leaps if column in positions]
+    return np.any(own, axis=0) if own else np.zeros(len(log.t_s) - 1, bool)
+
+
+def _new_motion(log: RunLog, positions: Collection[str], steps: Mapping[str, float]) -> Rows:
+    """Rows (n - 1,) across which a position is suddenly faster or slower, which no slip of a sensor does to it or to another."""
+    new: Rows = np.zeros(len(log.t_s) - 1, bool)
+    rows = thresholds.SEAM_ROWS
+    if len(log.t_s) < 4 * rows:
+        return new
+    for column in (name for name in log.columns.outputs if name in positions):
+        speed = (log.column(column)[rows:] - log.column(column)[:-rows]) / (log.t_s[rows:] - log.t_s[:-rows])
+        change = np.abs(np.nan_to_num(speed[rows + 1 :] - speed[: -rows - 1]))  # across one step between both
+        usual = float(np.percentile(change, thresholds.USUAL_SPEED_PERCENT))
+        least = thresholds.LEAST_SEAM_STEPS * steps.get(column, 0.0) / (rows * log.sample_period_s)
+        new[rows:-rows] |= change > max(thresholds.SEAM_KINK * usual, least)
+    return new
 
 
 def _not_back(leaps: Rows, values: Array) -> Rows:
@@ -102,16 +144,16 @@ def _passed_s(log: RunLog, columns: list[str]) -> Array:
     return np.asarray(np.where(held, log.t_s[1:] - log.t_s[last], np.diff(log.t_s)))
 
 
-def _leaps(values: Array, passed_s: Array, period_s: float, step: float) -> Rows:
-    """Rows (n - 1,) behind which a column moves far faster than it ever does for longer."""
-    speed = np.nan_to_num(np.abs(np.diff(values)) / np.where(passed_s > 0.0, passed_s, np.inf))
+def _leaps(log: RunLog, column: str, passed_s: Array, steps: Mapping[str, float], usual_percent: float) -> Rows:
+    """Rows (n - 1,) behind which a column moves far faster, in the times `passed_s` (n - 1,), than just before and behind, and than
+    that percentile of its speeds."""
+    speed = np.nan_to_num(np.abs(np.diff(log.column(column))) / np.where(passed_s > 0.0, passed_s, np.inf))
     padded = np.pad(speed, thresholds.SEAM_ROWS)
     shifts = [shift for shift in range(2 * thresholds.SEAM_ROWS + 1) if shift != thresholds.SEAM_ROWS]
     near = np.max([padded[shift : shift + len(speed)] for shift in shifts], axis=0)
-    usual = np.maximum(near, float(np.percentile(speed, thresholds.USUAL_SPEED_PERCENT)))
-    return np.asarray(
-        (speed > thresholds.SEAM_FASTER * usual) & (speed * period_s > thresholds.LEAST_SEAM_STEPS * step)
-    )
+    usual = np.maximum(near, float(np.percentile(speed, usual_percent)))
+    far = speed * log.sample_period_s > thresholds.LEAST_SEAM_STEPS * steps.get(column, 0.0)
+    return np.asarray((speed > thresholds.SEAM_FASTER * usual) & far)
 
 
 def _found(

@@ -1,7 +1,7 @@
 """What a log's time stamps and sequence numbers say: true sample period, jitter, missing and repeated rows."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
 from records.logs.restarts import restart_rows
+from records.reasons import Note
 
 
 @dataclass(frozen=True)
@@ -165,3 +166,19 @@ def _missing(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
             "the times were not taken where the samples were"
         )
         yield Found(Finding("sequence_against_time", name, "seq", float(log.t_s[0]), float(log.t_s[-1]), sentence))
+
+
+def from_their_start(logs: Sequence[RunLog], names: Sequence[str]) -> tuple[list[RunLog], tuple[Note, ...]]:
+    """The logs, those that start beyond CALENDAR_S with times from their own start, and a note for each of these.
+
+    Seconds since 1970 leave no digits for a step of time, and no instant near 0.
+    """
+    found, notes = [], []
+    for log, name in zip(logs, names, strict=True):
+        start_s = float(log.t_s[0])
+        if abs(start_s) > thresholds.CALENDAR_S:
+            said = f"{name}: its times start at {start_s:.0f} s; all times given here count from there"
+            notes.append(Note("calendar_clock", name, {"start_s": start_s}, said))
+            log = replace(log, t_s=log.t_s - start_s)
+        found.append(log)
+    return found, tuple(notes)

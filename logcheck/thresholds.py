@@ -135,6 +135,7 @@ SEAM_FASTER = Limit(
     5.0, "times the usual speed", "honest logs of two outputs reached 1.5 in both at once", "honest logs"
 )
 LEAST_SEAM_STEPS = Limit(20.0, "encoder steps", "a quiet log usually moves by one")
+SEAM_KINK = Limit(2.0, "times the usual change of speed", "across a step: no force stops a mass at once", "honest logs")
 SEAM_ROWS = Count(5, "rows", "a mass that is thrown is fast in the next rows too; a reading that fails comes back")
 BESIDE_FIRST_STEPS = Limit(4.0, "encoder steps", "rigs come to rest so near to where they rested before")
 BESIDE_FIRST_SHARE = Limit(0.02, "share of a column's range", "a run begins so near to where the one before began")

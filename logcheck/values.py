@@ -103,7 +103,7 @@ def value_findings(
     yield from clipped
     log = _without(log, clipped)
     held = list(held_findings(log, name))
-    dead = held or list(dead_findings(log, name, steps, begins, positions))
+    dead = held or list(dead_findings(log, name, steps, begins, positions, again))
     yield from dead
     yield from end_findings(_without(log, dead), name, steps, begins, positions)
     for column in log.columns.outputs:

@@ -1,6 +1,7 @@
 """A log with breaks replayed stretch by stretch: the first from rest, those behind a break from the state that the log tells.
 
-Where rows, or more readings in a row than the law's own answers can tell, are missing, nobody knows the law's state behind.
+Where rows, or more readings in a row than the law's own answers can tell, are missing, nobody knows the law's state behind. One wrong
+first reading, which a logger holds before its sensors are read, moves the state too; if the law had another, its answers tell which.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,13 +18,14 @@ from records.table import ControllerTable
 from records.text.units import units_of
 from replay import thresholds
 from replay.arithmetic import replayed
-from replay.beginning import other_beginnings
-from replay.events import UNLOGGED, Workshop
+from replay.events import UNLOGGED, Follower, Workshop
 from replay.firmware import CLEARED, NOT_FOUND, FirmwareReplay, demand_own, replay_firmware
 from replay.flight import flight_of, has_replayable_columns
+from replay.law import Setup
 from replay.midair import begins_in_flight
 from replay.search import MISSING_ROWS
 
+Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 
@@ -70,12 +72,49 @@ def _otherwise_begun(
     """What clears the firmware if it had another first reading or reference than the log holds; None where nothing does."""
     if not has_replayable_columns(log, table):
         return None
-    for other, told in other_beginnings(log, table):
+    for other, told in _other_beginnings(log, table):
         found, followed = _by_stretches(other, table, others, begins)
         if followed and (found.bit_exact or found.cause in CLEARED):
             sentence = "; ".join([told, found.sentence or "with it every bit agrees"])
             return replace(found, bit_exact=False, cause=UNLOGGED, sentence=sentence)
     return None
+
+
+def _other_beginnings(log: RunLog, table: ControllerTable) -> Iterator[tuple[RunLog, str]]:
+    """The log without the value at which one column of the law begins, where the law follows it then, and what is to be said of it: an
+    angle is not known there, a reference is that of the rows behind."""
+    for other, told in _without_first(log, table):
+        stopped = Follower(Workshop(flight_of(other, table)), Setup(table)).follow().stopped
+        if stopped is None or stopped > thresholds.LOOK_AHEAD:
+            yield other, told
+
+
+def _without_first(log: RunLog, table: ControllerTable) -> Iterator[tuple[RunLog, str]]:
+    for loop in table.loops:
+        place = log.columns.outputs.index(loop.output)
+        rows = _first_stand(log.y[:, place])
+        if rows:
+            y = log.y.copy()
+            y[:rows, place] = np.nan
+            yield replace(log, y=y), _sentence(log, loop.output, rows)
+        values = log.extra[loop.reference]
+        rows = _first_stand(values)
+        if rows:
+            values = np.concatenate([np.full(rows, values[rows]), values[rows:]])
+            yield replace(log, extra={**log.extra, loop.reference: values}), _sentence(log, loop.reference, rows)
+
+
+def _first_stand(values: Array) -> int:
+    """How many rows a column begins with one value; 0 for more than MOST_UNREAD, and where nothing was read."""
+    others = np.flatnonzero(values != values[0])
+    rows = int(others[0]) if others.size and np.isfinite(values[0]) else 0
+    return rows if rows <= thresholds.MOST_UNREAD else 0
+
+
+def _sentence(log: RunLog, column: str, rows: int) -> str:
+    value = float(log.column(column)[0])
+    first = "in the first row" if rows == 1 else f"in the first {rows} rows"
+    return f"{column} is {value:.6g} {first}, where the law had another value"
 
 
 def _stand(log: RunLog, table: ControllerTable, at_s: float | None) -> tuple[RunLog, str] | None:

@@ -153,7 +153,9 @@ def test_one_output_that_leaps_with_a_reference_or_an_open_loop_s_input_is_anoth
     log = log_of()
     rows = np.arange(2000) >= 900
     log.y[rows, 0] += 80 * STEP_RAD
-    assert list(seam_findings(log, "a", STEPS, read_again(log), POSITIONS)) == []  # its sensor may have slipped
+    (either,) = seam_findings(log, "a", STEPS, read_again(log), POSITIONS)  # its sensor may have slipped
+    assert (either.finding.kind, either.begins) == ("lone_leap", None)
+    assert "psi_rad alone leaps at 9 s" in either.finding.sentence
     if told_by == "a reference":
         other = replace(log, extra={"psi_ref_rad": np.where(rows, 0.2, -0.2)})
     else:
@@ -161,6 +163,29 @@ def test_one_output_that_leaps_with_a_reference_or_an_open_loop_s_input_is_anoth
     (found,) = seam_findings(other, "a", STEPS, read_again(other), POSITIONS)
     assert found.begins is not None
     assert np.flatnonzero(found.begins).tolist() == [900]
+
+
+@pytest.mark.parametrize("rest_s", [0.5, 3.0])
+@pytest.mark.parametrize("told_by", ["references", "the first row", "both outputs"])
+def test_a_flight_that_ends_at_rest_is_cut_from_the_one_behind_it(told_by: str, rest_s: float) -> None:
+    """Truth: both axes come to rest and stand, then another flight begins where the first did, or elsewhere."""
+    first = log_of(1400)
+    rest = round(rest_s / 0.01)
+    rows = np.concatenate([np.arange(1400), np.full(rest, 1399), np.arange(400)])
+    away = np.where(np.arange(len(rows)) < 1400 + rest, 0.0, 90 * STEP_RAD * (told_by == "both outputs"))
+    reference = np.where(np.arange(len(rows)) < 1400 + rest, 0.2, -0.2)
+    extra = {"psi_ref_rad": reference} if told_by == "references" else {}
+    log = replace(first, t_s=0.01 * np.arange(len(rows)), u=first.u[rows], y=first.y[rows] + away[:, None], extra=extra)
+    assert np.flatnonzero(examine([log], PLANT, names=["log"]).logs[0].begins).tolist() == [1400 + rest]
+
+
+def test_an_axis_that_rests_at_once_where_another_leaps_begins_another_log() -> None:
+    """Truth: the flight ends at 1 rad/s; in the next psi begins 60 steps away and phi about where it was, both from rest."""
+    first = log_of(1400)
+    first.y[:] = rounded(0.9 * np.sin(np.column_stack([1.3 * first.t_s, 0.9 * first.t_s])))
+    begun = 0.3 * (1.0 - np.cos(1.3 * first.t_s[:400, None])) + first.y[-1] + [60 * STEP_RAD, 0.0]
+    y, u = np.vstack([first.y, rounded(begun)]), np.vstack([first.u, first.u[-400:]])
+    assert begins(replace(first, t_s=0.01 * np.arange(1800), u=u, y=y)) == [1400]
 
 
 @pytest.mark.parametrize("period_s", [0.02, 0.01, 0.002])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from logcheck import thresholds
-from logcheck.clock import from_their_start
+from logcheck.stamps import from_their_start
 from logcheck.stretches import stretches
 from records.log import RunLog
 from sim.columns import log_columns

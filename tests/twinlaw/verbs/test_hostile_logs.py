@@ -74,7 +74,10 @@ BAD = {
     "one constant": (text_of(np.column_stack([sound_rows()[:, 0], np.full((400, 4), 0.1)])).encode(), ["constant"]),
     "an axis that stands": (with_cells(slice(None), 4, 17 * STEP_RAD), ["phi_rad", "locked", "azimuth"]),
     "time backwards": (with_times(lambda t: t[::-1]), ["t_s", "line 3", "increases"]),
-    "a time twice": (with_times(lambda t: np.repeat(t[::2], 2)), ["t_s", "line 3"]),
+    "times by chance": (
+        with_times(lambda t: np.sort(np.random.default_rng(1).choice(t[::9], 400))),
+        ["t_s", "to a stamp"],
+    ),
     "milliseconds": (with_times(lambda t: 1e3 * t), ["t_s", "seconds"]),
     "microseconds": (with_times(lambda t: 1e6 * t), ["t_s", "seconds"]),
     "huge angles": (scaled(3, 1e300), ["psi_rad", "no angle of this plant"]),

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from diagnosis.diagnose import Material
 from logcheck.breaks import unbroken
-from logcheck.clock import from_their_start
 from logcheck.integrity import LogIntegrity, as_read, demand, examine
+from logcheck.stamps import from_their_start
 from logcheck.stretches import stretches
 from records.diagnosis import Firmware
 from records.errors import BadInput
