@@ -48,6 +48,10 @@ COMMANDS: dict[str, list[list[str]]] = {
     "compared_velagic": [["compare", *VELAGIC]],
     "coverage": [["experiments", "--seed", "1", "--repetitions", "100"]],
     "designed": [["design"]],
+    "each": [
+        ["run", "--plant", "plants/ce150.toml", "--out", "{out}/build"],
+        ["diagnose", "--plant", "plants/ce150.toml", "--each", "--out", "{out}/answers", "{out}/build/run.csv"],
+    ],
     "envelope": [["envelope", "--seed", "1", "--show", "HA6000ft-50kts"]],
     "identified": [
         ["experiments", "--seed", "1"],

@@ -5,15 +5,19 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
 from recordings.datasets.files import datasets_folder
+from tests.docs.commands import fenced
 from tests.docs.numbers import NUMBER, agrees, last_digit
 from tests.docs.results import COMMANDS, FOLDER, HOURS, made, result
 from tests.docs.tables import line
 from tests.docs.test_files import KNOWN
 from tests.real_rigs import parts
 from tests.test_project import ROOT
+from twinlaw.cli import console
+from twinlaw.workflows.diagnose.each import HEADING, row
 
 BLIND = (ROOT / "docs" / "blind.md").read_text(encoding="utf-8")
 REAL = (ROOT / "docs" / "real-data.md").read_text(encoding="utf-8")
@@ -89,6 +93,11 @@ def test_the_genetic_algorithm_s_table_is_what_the_identification_wrote() -> Non
             found = result("velagic")["stages"][int(stage)]["searches"][place]["values"][name]
             assert 100.0 * (found / truth - 1.0) == pytest.approx(float(number), abs=0.51 * last_digit(number))
         assert agrees(cells[7], f"100*results.{own}.sd/results.{own}.value")
+
+
+def test_the_answer_to_a_folder_of_logs_is_what_the_command_prints() -> None:
+    shown = fenced("docs/sweeps.md", "text")
+    assert shown == [f"{console.table(map(row, result('each')['answers']), HEADING)}\n"]
 
 
 def test_a_table_s_row_that_is_off_by_its_last_digit_is_seen() -> None:
@@ -173,6 +182,50 @@ def test_the_figures_of_three_families_are_those_of_their_scores() -> None:
     heading = f"|figure|first, {found[0]['cases']}|second, {found[1]['cases']}|real, {found[2]['cases']}|"
     told = [cells for _, *cells in rows(heading, BLIND)][:6]
     assert told == [list(line) for line in zip(*map(_fresh, found), strict=True)]
+
+
+def test_the_cases_of_three_families_that_are_told_otherwise_are_those_of_their_scores() -> None:
+    judged = [
+        (family, entry)
+        for family in ("first", "second", "real")
+        for entry in result(f"blind_fresh_{family}")["judgements"]
+        if entry["severity_after_retune"] >= 2 and entry["kind"] != "nominal"
+    ]
+    otherwise = [
+        [family, " + ".join(sorted(entry["effects"])), " + ".join(sorted(entry["found"])) or "no gap"]
+        for family, entry in judged
+        if not entry["detected"] or entry["rank"] != 1
+    ]
+    assert list(rows("|family|truth|told|", BLIND)) == otherwise
+
+
+def test_what_the_page_says_of_300_cases_beside_their_tables_is_in_their_score() -> None:
+    found = result("blind_first_rig")["diagnose"]
+    figures = {entry["name"]: entry for entry in found["figures"]}
+
+    def missed(name: str) -> str:
+        return f"{round((1.0 - figures[name]['value']) * figures[name]['cases'])} of {figures[name]['cases']} "
+
+    assert f"**Pairs**: {missed('two effects, both named')}" in BLIND
+    assert f"**Outside**: {missed('out of library: no wrong name, place right')}" in BLIND
+    every, whole = (figures[f"hold-out shrinkage, tenth percentile{what}"] for what in ("", ", no frames lost"))
+    assert f"**Shrinkage**: {every['cases'] - whole['cases']} of {every['cases']} lost frames" in BLIND
+    assert f"its tenth percentile is {whole['value']:.3f}." in BLIND
+    sure = [entry for entry in found["reliability"] if entry["low"] >= 0.8]
+    count = sum(entry["count"] for entry in sure)
+    stated, right = (sum(entry["count"] * entry[key] for entry in sure) / count for key in ("stated", "right"))
+    assert f"Of {count} answers stated with 0.8 and more, {stated:.2f} in the mean, {right:.2f} are right." in one_line(
+        BLIND
+    )
+    counted = [(entry["count"], entry["stated"]) for entry in found["reliability"]]
+    total = sum(count for count, _ in counted)
+    # |mean of n honest answers - p| is on average sqrt(2 p (1 - p) / pi n)
+    chance = sum(count / total * (2.0 * p * (1.0 - p) / (np.pi * count)) ** 0.5 for count, p in counted)
+    assert f"honest ones would have an error of {chance:.2f}." in one_line(BLIND)
+
+
+def one_line(text: str) -> str:
+    return " ".join(text.split())
 
 
 def test_what_the_learned_law_is_made_of_is_told_as_its_file_says() -> None:

@@ -77,10 +77,11 @@ HEADING = ("log", "verdict", "found", "most likely", "probability", "error gone"
 
 def rows(found: Sequence[Answered]) -> list[tuple[str, ...]]:
     """The same for a person."""
-    return [_row(_facts(entry)) for entry in found]
+    return [row(told) for told in facts(found)]
 
 
-def _row(told: Mapping[str, Any]) -> tuple[str, ...]:
+def row(told: Mapping[str, Any]) -> tuple[str, ...]:
+    """What is told of one for a program, as a row below HEADING."""
     if "failure" in told:
         return (told["name"], "not answered", "", "", "", "")
     first, fraction = told["first"], told["fraction"]
