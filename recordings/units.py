@@ -10,7 +10,8 @@ from records.text.units import dimension
 # As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
 TIME_NAMES = frozenset(
     "t ts time times tout epoch timestamp timestamps time_stamp stamp elapsed elapsed_time datenum zeit temps tiempo tempo".split()  # noqa: SIM905
-)
+) | {"zeitstempel", "uhrzeit", "horodatage"}
+DATE_NAMES = frozenset(("date", "datetime", "date_time", "datum", "fecha"))  # a clock where nothing else is one
 
 
 @dataclass(frozen=True)

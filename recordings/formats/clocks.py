@@ -8,17 +8,19 @@ from itertools import pairwise
 import numpy as np
 
 from recordings.signals import Signal
-from recordings.units import TIME_NAMES, known, unit_of_clock, without_suffix
+from recordings.units import DATE_NAMES, TIME_NAMES, known, unit_of_clock, without_suffix
 
 
 def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
     """The signals with their clocks: in the innermost structure around one, the only vector of times as long as it is.
 
-    Times are what is named so; where nothing is, dates and times of day; else what rises in a stated unit of time.
+    Times are what is named so; where nothing is, dates and times of day; else what rises in a stated unit of time; else what is named as
+    dates are, which a spreadsheet writes as numbers.
     """
     named = [name for name, signal in signals.items() if signal.values.ndim == 1 and is_time_name(name)]
     dated = [name for name, signal in signals.items() if signal.instants]
-    clocks = named or dated or [name for name, signal in signals.items() if _rises_in_time(signal)]
+    rising = [name for name, signal in signals.items() if _rises_in_time(signal)]
+    clocks = named or dated or rising or [name for name in signals if name.lower() in DATE_NAMES]
     return {
         name: replace(signal, clock=signal.clock or _clock_of(name, signal, signals, clocks))
         for name, signal in signals.items()

@@ -55,7 +55,11 @@ def without_text_below(
     """The rows of numbers: a last row that was cut short, and text below the numbers, are left out and said; rows of nothing too."""
     end = len(lines)
     labelled = sum(_begins_with_text(line, layout) for line in lines[:SAMPLE_LINES]) > 0.5 * len(lines[:SAMPLE_LINES])
-    while end > 1 and (not _values(lines[end - 1], layout) or _begins_with_text(lines[end - 1], layout) > labelled):
+    while end > 1 and (
+        not _values(lines[end - 1], layout)
+        or _begins_with_text(lines[end - 1], layout) > labelled
+        or _stands_apart(lines[end - 2 : end], layout)
+    ):
         end -= 1
     if end < len(lines):
         told.append(f"text below the numbers is left out, from line {lines[end].number} on: {lines[end].text[:40]!r}")
@@ -64,6 +68,24 @@ def without_text_below(
         told.append(f"line {lines[end - 1].number}, the last, is cut short ({len(last)} cells of {width}) and left out")
         end -= 1
     return lines[:end], tuple(told)
+
+
+def without_cut_cell(
+    lines: Sequence[Line], told: tuple[str, ...], layout: Layout
+) -> tuple[Sequence[Line], tuple[str, ...]]:
+    """The rows of a file without a last line end: its last number may have lost digits, and has where all others have as many more."""
+    cells = [split(line.text, layout.separator)[-1] for line in lines[-1 - SAMPLE_LINES :]]
+    *others, last = (len(cell.partition(layout.decimal)[2]) for cell in cells)
+    if len(others) < 2 or len({*others}) > 1 or last >= others[0]:
+        return lines, told
+    said = f"line {lines[-1].number}, the last, ends within a number, as no line end is behind it, and is left out"
+    return lines[:-1], (*told, said)
+
+
+def _stands_apart(lines: Sequence[Line], layout: Layout) -> bool:
+    """Whether the second of two lines is a sum behind an empty line: without a first cell where the other has one."""
+    first, last = (split(line.text, layout.separator)[0] for line in lines)
+    return lines[1].number > lines[0].number + 1 and not last.strip() and bool(first.strip())
 
 
 def _values(line: Line, layout: Layout) -> int:

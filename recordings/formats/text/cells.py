@@ -13,10 +13,11 @@ Array = NDArray[np.float64]
 DECIMALS = (".", ",")
 # What spreadsheets, MATLAB, R, pandas and loggers write where there is no value.
 _WORDS = (
-    "nan na n/a #n/a #n/d null none nil - -- --- ? * invalid missing -nan nan(ind) -nan(ind) nan(snan) -nan(snan) "
-    "1.#qnan -1.#qnan 1.#snan -1.#snan 1.#ind -1.#ind #value! #div/0! #num!"
+    "nan na n/a null none nil - -- --- . ? * invalid missing -nan nan(ind) -nan(ind) nan(snan) -nan(snan) "
+    "1.#qnan -1.#qnan 1.#snan -1.#snan 1.#ind -1.#ind"
 )
 MISSING = frozenset(("", *_WORDS.split()))
+_ERROR = re.compile(r"#[^\d\s]\S*")  # of a spreadsheet, in any language: #N/A, #NV, #WERT!, #VALEUR!
 _NUMBER = {
     ".": re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?"),
     ",": re.compile(r"[+-]?(\d+(,\d+)?|,\d+)([eEdD][+-]?\d+)?"),
@@ -42,7 +43,7 @@ DAY_S = 86400.0
 
 def is_missing(cell: str) -> bool:
     """Whether a cell says that nothing was measured."""
-    return cell.lower() in MISSING
+    return cell.lower() in MISSING or _ERROR.fullmatch(cell) is not None
 
 
 def number(cell: str, decimal: str) -> float | None:

@@ -1,6 +1,7 @@
 """The bytes of a text file as text: UTF-8, UTF-16, UTF-32, or the letters of Windows, and what is to be said of that."""
 
 import codecs
+import re
 from pathlib import Path
 
 from records.errors import BadInput
@@ -48,15 +49,35 @@ def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
         encoding = next(
             (f"utf-16-{end}" for end, at in (("le", 1), ("be", 0)) if content[at:200:2].count(0) > 50), None
         )
-        if encoding is None:
-            raise BadInput("text file", str(path), "bytes that are no text", "a table of text", "export it as CSV")
+    told: list[str] = []
+    if encoding is None and b"\0" in content:
+        content, said = _without_holes(content, path)
+        told.append(said)
     try:
         text = content.decode(encoding or "utf-8")
-        return _plain(text), (f"encoding {encoding.removesuffix('-sig')} by its mark",) if encoding else ()
+        told += [f"encoding {encoding.removesuffix('-sig')} by its mark"] if encoding else []
     except UnicodeDecodeError:
-        return _plain(content.decode("cp1252", errors="replace")), ("encoding Windows-1252, as it is no UTF-8",)
+        text = content.decode("cp1252", errors="replace")
+        told.append("encoding Windows-1252, as it is no UTF-8")
+    return _plain(text), tuple(told)
+
+
+def _without_holes(content: bytes, path: Path) -> tuple[bytes, str]:
+    """A text without runs of zero bytes, which a logger that lost power leaves within its file, and without the rows that one cut; and what
+    is said of it. Raises BadInput where the rest is no text."""
+    whole = re.sub(rb"(?:(?<=[\r\n])|^)\0+", b"", content)
+    kept = re.sub(rb"[^\r\n\0]*\0+[^\r\n]*", b"", whole)
+    if re.search(rb"[\x01-\x08\x0e-\x1a\x7f]", kept):
+        raise BadInput("text file", str(path), "bytes that are no text", "a table of text", "export it as CSV")
+    line = content.count(b"\n", 0, content.index(b"\0")) + 1
+    cut = "" if kept == whole else "; the rows that they cut are left out"
+    return kept, f"{content.count(bytes(1))} zero bytes within the text, first in line {line}, are passed over{cut}"
+
+
+# A typesetter's minus, dash, small and wide hyphen; blanks that do not break.
+_TYPESET = str.maketrans("\u2212\u2013\ufe63\uff0d\u00a0\u202f\u2009", "----   ")
 
 
 def _plain(text: str) -> str:
-    """The text with a typesetter's minus and blanks as numbers are written."""
-    return text.replace("\u2212", "-").replace("\u00a0", " ").replace("\u202f", " ").replace("\u2009", " ")
+    """The text with minus and blanks as numbers are written."""
+    return text.translate(_TYPESET)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from recordings.formats.clocks import with_clocks, with_clocks_in_front
 from recordings.formats.text.above import COMMENTS
-from recordings.formats.text.body import without_headers, without_messages, without_text_below
+from recordings.formats.text.body import without_cut_cell, without_headers, without_messages, without_text_below
 from recordings.formats.text.cells import (
     from_the_first_s,
     is_missing,
@@ -68,6 +68,8 @@ def of_text(text: str, asked: TextLayout, where: str) -> Contents:
     lines = ungrouped(lines, layout.separator, layout.decimal) if layout.grouped else lines
     rows, passed_over = without_messages(*without_headers(lines, layout), layout)
     body, left_out = without_text_below(rows, passed_over, layout)
+    if not text.endswith(("\n", "\r")):
+        body, left_out = without_cut_cell(body, left_out, layout)
     _check_upright(body, layout, where)
     told = (*monitored, *layout.found, *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)

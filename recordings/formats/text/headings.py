@@ -1,11 +1,11 @@
-"""A column's heading as name and unit: `psi [deg]`, `Time(s)`, `U / V`, `angle, deg`, `angle in deg`."""
+"""A column's heading as name and unit: `psi [deg]`, `Time(s)`, `U / V`, `angle, deg`, `angle - deg`, `angle in deg`."""
 
 import re
 
 from recordings.units import known
 
-_BRACKETED = re.compile(r"(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*")
-_SIGN = re.compile(r"\s*(?:,|/|:|\bin\b)\s*(?=[^\s,/:])")  # in front of a unit that stands without brackets
+_BRACKETED = re.compile(r"(?P<name>.*?)\s*[\[({<](?P<unit>[^\[\](){}<>]*)[\])}>]\s*")
+_SIGN = re.compile(r"\s*(?:,|/|:|\bin\b| - )\s*(?=[^\s,/:])")  # in front of a unit that stands without brackets
 TIME = "time"  # the name of a heading that is a unit of time and nothing else, `in s`
 
 
@@ -13,7 +13,7 @@ def name_and_unit(heading: str) -> tuple[str, str]:
     """The name without its unit, and the unit; a text in round brackets or behind a sign is a unit only where it is a known one."""
     match = _BRACKETED.fullmatch(heading)
     if match and match["name"] and (known(match["unit"]) or re.search(r"\[[^\]]+\]\s*$", heading)):
-        return match["name"], match["unit"].strip()
+        return match["name"].rstrip(" _:,") or match["name"], match["unit"].strip()
     for sign in _SIGN.finditer(heading):
         name, unit = heading[: sign.start()], heading[sign.end() :].strip()
         found = known(unit)

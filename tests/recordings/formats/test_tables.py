@@ -129,3 +129,77 @@ def test_a_state_that_stays_is_no_name_of_a_signal(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text(f"t_s,state,psi_rad\n{rows}")
     done = imported_here(tmp_path / "run.csv", ColumnMapping({"u_M_V": "0", "u_T_V": "0", "phi_rad": "0"}))
     np.testing.assert_allclose(done.log.column("psi_rad"), 0.001 * np.arange(100))
+
+
+def _rows(**cells: str) -> list[str]:
+    """Rows of a run as text of six decimals; `cells` are what stands in row N, column psi_rad, as rN."""
+    made = [f"{t:.2f},{5 + t:.6f},1.800000,{10 + t:.6f},{20 - t:.6f}" for t in T_S]
+    for name, cell in cells.items():
+        row = int(name[1:])
+        made[row] = ",".join([*made[row].split(",")[:3], cell, made[row].split(",")[4]])
+    return made
+
+
+HEAD = "t_s,u_M_V,u_T_V,psi_rad,phi_rad\n"
+
+
+@pytest.mark.parametrize("cell", ["#NV", "#WERT!", "#VALEUR!", "#¡DIV/0!", "#REF!", "."])
+def test_what_a_spreadsheet_writes_for_no_value_in_any_language_is_none(cell: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(HEAD + "\n".join(_rows(r7=cell)) + "\n", encoding="utf-8")
+    psi_rad = imported_here(tmp_path / "run.csv", ColumnMapping()).log.column("psi_rad")
+    assert np.flatnonzero(np.isnan(psi_rad)).tolist() == [7]
+
+
+@pytest.mark.parametrize("minus", ["−", "–", "﹣", "－"])
+def test_a_typesetter_s_minus_is_a_minus(minus: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(HEAD + "\n".join(_rows(r7=f"{minus}3.5")) + "\n", encoding="utf-8")
+    assert imported_here(tmp_path / "run.csv", ColumnMapping()).log.column("psi_rad")[7] == -3.5
+
+
+@pytest.mark.parametrize("heading", ["psi_[deg]", "psi <deg>", "psi - deg", "psi: [deg]", "psi_ (°)"])
+def test_a_heading_may_set_its_unit_apart_in_other_ways(heading: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(HEAD.replace("psi_rad", heading) + "\n".join(_rows()) + "\n", encoding="utf-8")
+    psi_rad = imported_here(tmp_path / "run.csv", ColumnMapping()).log.column("psi_rad")
+    np.testing.assert_allclose(psi_rad, np.radians(10.0 + T_S), atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["Datum", "Date", "Zeitstempel"])
+def test_a_spreadsheet_s_days_under_the_name_of_a_date_are_the_clock(name: str, tmp_path: Path) -> None:
+    rows = [f"{45418.0 + 10.0 * t / 86400.0:.10f},{row.partition(',')[2]}" for t, row in zip(T_S, _rows(), strict=True)]
+    (tmp_path / "run.csv").write_text(HEAD.replace("t_s", name) + "\n".join(rows) + "\n")
+    log = imported_here(tmp_path / "run.csv", ColumnMapping()).log
+    np.testing.assert_allclose(log.t_s, 10.0 * T_S, atol=2e-5)  # a double holds a date's days to 1e-5 s
+
+
+def test_a_sum_without_a_label_behind_an_empty_line_is_no_row(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(HEAD + "\n".join(_rows()) + "\n\n,5.1,1.8,10.2,19.8\n")
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.t_s, T_S)
+    assert any("left out, from line 53 on" in told for told in done.found)
+
+
+@pytest.mark.parametrize(("cut", "rows"), [(0, 50), (3, 49), (8, 49)])
+def test_a_last_row_that_ends_within_a_number_is_left_out(cut: int, rows: int, tmp_path: Path) -> None:
+    """Truth: no line end stands behind the last row; its last number has all of its digits, or lacks some, or all."""
+    text = HEAD + "\n".join(_rows())
+    (tmp_path / "run.csv").write_text(text[: len(text) - cut])
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    assert len(done.log.t_s) == rows
+    assert any("line 51, the last" in told for told in done.found) == (rows == 49)
+
+
+def test_zero_bytes_that_a_crash_left_between_rows_are_passed_over_and_a_row_that_they_cut_is_told(
+    tmp_path: Path,
+) -> None:
+    rows = [f"{row}\n".encode() for row in _rows()]
+    (tmp_path / "run.csv").write_bytes(HEAD.encode() + b"".join(rows[:20]) + bytes(300) + b"".join(rows[20:]))
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.t_s, T_S)
+    assert any("300 zero bytes within the text, first in line 22" in told for told in done.found)
+    (tmp_path / "run.csv").write_bytes(HEAD.encode() + b"".join(rows[:20])[:-4] + bytes(300) + b"".join(rows[20:])[5:])
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.t_s, np.delete(T_S, [19, 20]))
+    assert any("the rows that they cut are left out" in told for told in done.found)
+    (tmp_path / "run.csv").write_bytes(bytes(range(256)) * 20)
+    with pytest.raises(BadInput, match="bytes that are no text"):
+        imported_here(tmp_path / "run.csv", ColumnMapping())
