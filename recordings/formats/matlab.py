@@ -31,11 +31,17 @@ def read(path: Path, asked: TextLayout) -> Contents:
         name: replace(
             signal,
             unit=_beside(name, _UNITS, texts),
-            heading=_beside(name, _LABELS, texts) or _of_series(name, found.signals),
+            heading=_label(name, texts, found.signals) or _of_series(name, found.signals),
         )
         for name, signal in found.signals.items()
     }
     return Contents(with_clocks(signals), texts, unread=found.unread, singles=found.singles)
+
+
+def _label(name: str, texts: Mapping[str, str], signals: Mapping[str, object]) -> str:
+    """The label of a value; of a scope's signal that of its values alone, and not of what is said of them (`dimensions`)."""
+    scope, _, field = name.rpartition(".")
+    return "" if field != "values" and f"{scope}.values" in signals else _beside(name, _LABELS, texts)
 
 
 def _of_series(name: str, signals: Mapping[str, object]) -> str:

@@ -28,7 +28,7 @@ def flat(content: Mapping[str, Any]) -> Flat:
         if isinstance(value, str):
             found.texts[name] = value
             continue
-        array = np.asarray(value)
+        array = _real(np.asarray(value))
         if array.dtype.kind not in "biuf":
             found.unread[name] = (
                 str(value)
@@ -42,6 +42,11 @@ def flat(content: Mapping[str, Any]) -> Flat:
         else:
             found.unread[name] = "empty"
     return found
+
+
+def _real(array: np.ndarray) -> np.ndarray:
+    """Complex numbers whose imaginary part is nothing as the real ones that they are; anything else as it is."""
+    return array.real if array.dtype.kind == "c" and not array.imag.any() else array
 
 
 @dataclass(frozen=True)

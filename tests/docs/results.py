@@ -77,6 +77,12 @@ COMMANDS: dict[str, list[list[str]]] = {
     ),
     "real_emps": real("emps", ["DATA_EMPS"], ["--free", "M,F_v,F_c,offset"], ["DATA_EMPS_PULSES"]),
     "real_pamh_aeropendulum": real("pamh_aeropendulum", ["PAMH_3set"], [], ["PAMH_REI", "PAMH_PID"]),
+    "real_quanser_aero": real(
+        "quanser_aero",
+        ["model_verification"],
+        ["--free", "Kmt,Ktt,Kmp,Ktp,d1,d2,dx"],
+        ["dynamic_coupling_free_pitch"],
+    ),
     "sweep_coverage": [["sweep", "--plant", "plants/raptor50.toml", "--repetitions", "60"]],
     "swept_references_free": swept("references", "free"),
     "swept_inputs_free": swept("inputs", "free"),

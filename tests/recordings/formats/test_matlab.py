@@ -188,3 +188,17 @@ def test_a_sparse_vector_is_a_vector_and_a_sparse_matrix_is_left_alone(tmp_path:
     sparse = {"psi_rad": csc_matrix(RUN["psi_rad"][:, None]), "K": csc_matrix(np.eye(3))}
     done = imported_here(save_run(tmp_path / "run.mat", **sparse), ColumnMapping())
     np.testing.assert_array_equal(done.log.column("psi_rad"), RUN["psi_rad"])
+
+
+def test_complex_numbers_without_an_imaginary_part_are_real_and_others_are_refused(tmp_path: Path) -> None:
+    path = save_run(tmp_path / "run.mat", psi_rad=RUN["psi_rad"] + 0j)
+    np.testing.assert_array_equal(imported_here(path, ColumnMapping()).log.column("psi_rad"), RUN["psi_rad"])
+    with pytest.raises(BadInput, match="complex numbers"):
+        imported_here(save_run(tmp_path / "run.mat", psi_rad=RUN["psi_rad"] + 0.1j), ColumnMapping())
+
+
+def test_the_label_of_a_scope_s_signal_names_its_values_and_not_its_dimensions(tmp_path: Path) -> None:
+    """Truth: To Workspace saves one signal whose values lie along the third axis, with label and dimensions beside them."""
+    signals = {"values": RUN["psi_rad"].reshape(1, 1, -1), "dimensions": np.array([1, 1]), "label": "psi_rad"}
+    path = save_run(tmp_path / "run.mat", psi_rad=None, elevation={"time": T_S, "signals": signals})
+    np.testing.assert_array_equal(imported_here(path, ColumnMapping()).log.column("psi_rad"), RUN["psi_rad"])
