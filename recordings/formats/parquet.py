@@ -10,7 +10,7 @@ import numpy as np
 from recordings.formats.bags.messages import LONGEST_ARRAY
 from recordings.formats.clocks import with_clocks
 from recordings.formats.optional import package
-from recordings.formats.text.cells import from_the_first_s
+from recordings.formats.text.cells import from_the_first_s, is_missing, number, time_of_day_s
 from recordings.formats.text.headings import name_and_unit
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
@@ -39,7 +39,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
     signals: dict[str, Signal] = {}
     unread: dict[str, str] = {}
     for name, unit, heading, column in _columns(table):
-        values, stated = _numbers(column)
+        values, stated = _of_text(column) if "string" in str(column.type) else _numbers(column)
         if values is None:
             unread[name] = f"of the type {column.type}, no numbers"
         else:
@@ -73,3 +73,19 @@ def _numbers(column: Any) -> tuple[np.ndarray | None, str]:
     if values.dtype.kind == "m":
         return np.where(np.isnat(values), np.nan, values.astype("timedelta64[ns]").astype(np.int64) * _NS), "s"
     return (values.astype(float), "") if values.dtype.kind in "biuf" else (None, "")
+
+
+def _of_text(column: Any) -> tuple[np.ndarray | None, str]:
+    """Texts that are all numbers or dates and times of day as `_numbers`; None in place of values for any other text."""
+    cells = [None if cell is None else cell.strip() for cell in column.to_pylist()]
+    filled = [cell for cell in cells if cell is not None and not is_missing(cell)]
+    for read in (time_of_day_s, _number):
+        if filled and all(read(cell) is not None for cell in filled):
+            found = [None if cell is None or is_missing(cell) else read(cell) for cell in cells]
+            values = np.array([np.nan if value is None else value for value in found])
+            return (from_the_first_s(values), "s") if read is time_of_day_s else (values, "")
+    return None, ""
+
+
+def _number(cell: str) -> float | None:
+    return number(cell, ".")

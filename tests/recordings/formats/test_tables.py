@@ -12,7 +12,7 @@ from recordings.importing import import_file
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
 from tests.recordings.here import imported_here
-from tests.recordings.runs import T_S
+from tests.recordings.runs import RUN, T_S
 
 
 def test_without_a_mapping_the_columns_are_named_and_one_is_proposed_that_works(tmp_path: Path) -> None:
@@ -203,3 +203,21 @@ def test_zero_bytes_that_a_crash_left_between_rows_are_passed_over_and_a_row_tha
     (tmp_path / "run.csv").write_bytes(bytes(range(256)) * 20)
     with pytest.raises(BadInput, match="bytes that are no text"):
         imported_here(tmp_path / "run.csv", ColumnMapping())
+
+
+@pytest.mark.parametrize(
+    "stamps",
+    [
+        [f"{t:.3f}" for t in T_S],
+        [f"2026-03-01T23:59:59.{round(1e3 * t):03d}Z" for t in T_S],
+    ],
+)
+def test_stamps_of_a_parquet_file_may_be_texts_and_other_texts_are_none(
+    stamps: list[str | None], tmp_path: Path
+) -> None:
+    pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    columns = {**RUN, "t_s": stamps, "phi_rad": [f"{phi!r}" for phi in RUN["phi_rad"].tolist()], "state": ["up"] * 50}
+    parquet.write_table(pa.table(columns), tmp_path / "run.parquet")
+    log = imported_here(tmp_path / "run.parquet", ColumnMapping()).log
+    np.testing.assert_allclose(log.t_s, T_S, atol=1e-9)
+    np.testing.assert_array_equal(log.column("phi_rad"), RUN["phi_rad"])
