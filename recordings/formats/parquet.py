@@ -83,7 +83,7 @@ def _of_text(column: Any) -> tuple[np.ndarray | None, str]:
         if filled and all(read(cell) is not None for cell in filled):
             found = [None if cell is None or is_missing(cell) else read(cell) for cell in cells]
             values = np.array([np.nan if value is None else value for value in found])
-            return (from_the_first_s(values), "s") if read is time_of_day_s else (values, "")
+            return (from_the_first_s(values.tolist()), "s") if read is time_of_day_s else (values, "")
     return None, ""
 
 
