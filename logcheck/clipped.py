@@ -2,8 +2,9 @@
 
 An axis that turns back, or meets a stop, leaves the end of its way from rest, by a third of the way that it goes in as much time behind.
 Where a position comes to its extreme, stands there and leaves it at full speed, the way between was not read. What no mass moves may leave
-its rest at full speed, and so may, as a coarse sensor sees it, what an input just set going: these must come as evenly too. Of a sensor
-whose readings are never twice the same, a stand at an extreme is that by itself, but for one at zero, where it may rest.
+its rest at full speed, and so may, as a coarse sensor sees it, what an input just set going: these must come as evenly too. A sensor behind
+play, and an axis that sticks, stand so wherever they turn back: an end of a range is met more than once. Of a sensor whose readings are
+never twice the same, a stand at an extreme is that by itself, but for one at zero, where it may rest.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -84,7 +85,9 @@ def _ends(read: _Read, step: float) -> Iterator[_End]:
         own = [stand for stand in stands if read.values[stand[0]] == level]
         judged = [share for stand in own if (share := _evenness(read, *stand, least)) > 0.0]
         even = sum(share > thresholds.EVEN for share in judged)
-        if (even and even >= thresholds.MOST_CLIPPED * len(judged)) or (own and never_repeats and level != 0.0):
+        if even >= max(thresholds.LEAST_CLIPS, thresholds.MOST_CLIPPED * len(judged)) or (
+            own and never_repeats and level != 0.0
+        ):
             yield _End(level, how, own)
 
 

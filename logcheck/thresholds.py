@@ -61,6 +61,12 @@ CUT_OFF_STEPS = Limit(
 )
 CUT_OFF_ROWS = Count(128, "rows", "next to a stand at most", "the same stands")
 CUT_OFF_ALONE_STEPS = Limit(20.0, "least moves", "before a stand alone, in half as many rows", "the same stands")
+LEAST_CLIPS = Count(
+    2,
+    "stands",
+    "at one level, that the output leaves at full speed: play and dry friction stand so once where they turn back",
+    "128 sealed cases: five stand so once, none twice",
+)
 MOST_CLIPPED = Limit(
     0.5,
     "share",
