@@ -296,7 +296,7 @@ CONTROLLER = EquationController(
         "is not filtered, as in the paper. Where a plant file has [design.tuned.fuzzy], as `plants/ce150_velagic.toml`, what is open is "
         "taken from there: `twinlaw design --controller fuzzy --tune SEED` finds it by the same flight as the PID's gains."
     ),
-    equations=Fuzzy(),
+    equations=lambda _: Fuzzy(),
     gains=FuzzyGains,
     tables=design,
     template="fuzzy.c.j2",

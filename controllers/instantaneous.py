@@ -216,7 +216,7 @@ CONTROLLER = EquationController(
         "powers of z^-1, does not survive float32; in powers of z - 1, eliminated from the lowest power up, it does "
         "([theory.md](theory.md), section 8)."
     ),
-    equations=EQUATIONS,
+    equations=lambda _: EQUATIONS,
     gains=InstantaneousGains,
     tables=design,
     template="instantaneous.c.j2",

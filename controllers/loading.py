@@ -79,18 +79,20 @@ def _axis(entry: Any, row: EquationController, where: str, loop: Loop) -> AxisTa
     scalars = {name: checks.number(section[name], f"{where}.{loop.own(name)}") for name in names[2:]}
     feedforward_V = checks.numbers(section["feedforward_V"], f"{where}.{loop.own('feedforward_V')}")
     return AxisTable(
-        gains=_value(section["gains"], row.gains, f"{where}.gains"), feedforward_V=feedforward_V, **scalars
+        gains=_value(section["gains"], row.gains, f"{where}.gains", loop), feedforward_V=feedforward_V, **scalars
     )
 
 
-def _value(entry: Any, kind: Any, where: str) -> Any:
+def _value(entry: Any, kind: Any, where: str, loop: Loop) -> Any:
     """A value of the declared kind: a record, a tuple of whatever depth, a whole number, a number."""
     if isinstance(kind, type) and is_dataclass(kind) and not isinstance(kind, types.GenericAlias):
-        section, hints = checks.table(entry, where), get_type_hints(kind)
-        checks.keys(section, where, tuple(hints))
-        return kind(**{name: _value(section[name], hint, f"{where}.{name}") for name, hint in hints.items()})
+        hints = get_type_hints(kind)
+        section = own_section(entry, where, loop, hints)
+        return kind(
+            **{name: _value(section[name], hint, f"{where}.{loop.own(name)}", loop) for name, hint in hints.items()}
+        )
     if get_origin(kind) is tuple:
-        return _tuple(entry, get_args(kind), where)
+        return _tuple(entry, get_args(kind), where, loop)
     if kind is int:
         number = checks.number(entry, where)
         if number != int(number):
@@ -99,11 +101,12 @@ def _value(entry: Any, kind: Any, where: str) -> Any:
     return checks.number(entry, where)
 
 
-def _tuple(entry: Any, kinds: tuple[Any, ...], where: str) -> tuple[Any, ...]:
+def _tuple(entry: Any, kinds: tuple[Any, ...], where: str, loop: Loop) -> tuple[Any, ...]:
     endless = kinds[-1] is Ellipsis
     if not isinstance(entry, list) or not (endless or len(entry) == len(kinds)):
         raise BadInput("list", where, repr(entry)[:60], "a list" if endless else f"{len(kinds)} values", _AGAIN)
     each = [kinds[0]] * len(entry) if endless else list(kinds)
     return tuple(
-        _value(value, kind, f"{where}[{index}]") for index, (value, kind) in enumerate(zip(entry, each, strict=True))
+        _value(value, kind, f"{where}[{index}]", loop)
+        for index, (value, kind) in enumerate(zip(entry, each, strict=True))
     )

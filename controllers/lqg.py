@@ -1,80 +1,79 @@
-"""LQG of each axis: a Kalman filter that knows the rotor's lag and estimates what voltage is missing, and an LQR on its estimate.
+"""LQG of each loop: a Kalman filter of the output and its moves, and a regulator that moves the input by what that says.
 
-    m <- m + alpha (u - m)                                   the rotor's lag in volts, u the limited voltage            (C.8)
-    p = m + d - u_ff(Psi)                                    what drives the arm beyond its rest at this elevation      (C.9)
-    x <- x + beta_p p + beta_v v + beta_u (u - m)            angle                                                     (C.10)
-    v <- v + gamma_p p + gamma_v v + gamma_u (u - m)         its rate;   d, the missing voltage, stays                   (C.11)
-    x, v, d <- x, v, d + (l_x, l_v, l_d) (angle - x)         the steady-state Kalman filter                              (C.12)
-    u = u_ff(r) - d - k_m (m + d - u_ff(r)) - k_x (x - r) - k_v v                                                        (C.13)
+    y, x <- y + l_0 (measured - y), x + l (measured - y)                                 the steady-state Kalman filter          (C.11)
+    v = k_0 (r - y) - k x,   u = held + v, limited,   v <- u - held,   held <- u                 the regulator                  (C.12)
+    x_i <- x_i + x_(i+1) - a_i x_1 + b_i v,   y <- y + x_1                               the sampled plant of n states          (C.13)
 
-(C.8) to (C.11) are the linearised rotor and arm of (4)-(9), sampled with a zero-order hold; u_ff is the feed-forward of eq (28),
-of which gravity's stiffness is the slope, so the model is right at every elevation and not only near one. d takes up whatever the
-plant file does not know - weight, thrust, friction, the other axis - and is the integral action; as the filter is given the limited
-voltage, nothing winds up. So r is the reference as it comes: the regulator goes to it as fast as its weights say, and a filter before it
-would only be slower. The coefficients are polynomials in the elevation, fitted over the operating points, each of the lowest degree
-that is within 8 %; what they are at one point stands in controllers/lqg_gains.py.
+x_1 is the output's move in a sample, x_2 .. x_n what will move it later; v is the input's. Written in moves (Kaminer, Pascoal,
+Khargonekar and Coleman, Automatica 31, 1995: the D-implementation of scheduled controllers), the law knows no operating point: at rest x
+is 0 at any of them, and stays 0 while the coefficients, polynomials in the scheduling output, change. A rest has v = 0, so y = r: the
+moves are the integral action. As the filter is told the limited move, nothing winds up. So r is the reference as it comes: the regulator
+goes to it as fast as its weights say, and a filter before it would only be slower. The law begins at the operating point: `held` is the
+feed-forward there. What the coefficients are at one operating point stands in controllers/lqg_gains.py; each kind is fitted over the
+points by polynomials of the lowest degree that is within FIT.
 """
 
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from collections.abc import Mapping
+from dataclasses import dataclass, make_dataclass
+from functools import cache
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from codegen.law_frame import LawNumbers, Sample, polynomial
-from controllers.equations.designing import Points, axis_table, law_table
+from controllers.equations.designing import Points, axis_table, largest_output, law_table
 from controllers.equations.equation_controller import EquationController
 from controllers.equations.frame import AxisNumbers, Decisions
-from controllers.lqg_gains import WEIGHTS, gains_at
+from controllers.equations.judging import demand_margins, demand_stable
+from controllers.lqg_gains import Speeds, gains_at, wished_speeds
+from controllers.lqg_loop import controller_at, coupled_poles, open_loop
+from design.loop import plant_polynomials
 from design.schedule import fit, stored_fit
+from design.table import plain
+from records.errors import BadInput
 from records.law_table import LawTable
-from records.table import AXES, Polynomial
+from records.table import Polynomial
 
 N = TypeVar("N")
 Array = NDArray[np.float64]
 
-ANGLE_MAX_RAD, RATE_MAX_RAD_S, MISSING_MAX_V = 8.0, 50.0, 10.0  # beyond: a broken state
+FIT = 0.08  # of the largest value: every power costs cycles, and most coefficients hardly vary
+KINDS = ("a", "b", "k", "l")
+# Shares of the wished speed, tried in turn. quanser_aero's loops, whose inputs push both axes alike, hold each other from 0.5 on.
+SLOWER = (1.0, 0.7, 0.5, 0.35)
 
 
 @dataclass(frozen=True)
 class LqgGains:
-    """Polynomials in Psi of (C.8) to (C.13), and the ends of the state."""
+    """Polynomials of (C.11) to (C.13), n of `a` and `b` [rad/V], n + 1 of `k_V_rad` and `l`, and what neither y nor x exceeds."""
 
-    alpha: Polynomial
-    beta_p: Polynomial
-    beta_v: Polynomial
-    beta_u: Polynomial
-    gamma_p: Polynomial
-    gamma_v: Polynomial
-    gamma_u: Polynomial
-    l_x: Polynomial
-    l_v: Polynomial
-    l_d: Polynomial
-    k_m: Polynomial
-    k_x: Polynomial
-    k_v: Polynomial
-    angle_max_rad: float
-    rate_max_rad_s: float
-    missing_max_V: float
+    a: tuple[Polynomial, ...]
+    b: tuple[Polynomial, ...]
+    k_V_rad: tuple[Polynomial, ...]
+    l: tuple[Polynomial, ...]  # noqa: E741  # the field's letter
+    y_max_rad: float
+
+
+@cache
+def axis_state(order: int) -> Any:
+    """The record of what one loop remembers: filtered reference, the held input, the output, its moves."""
+    moves = [f"move_{index}_rad" for index in range(1, order + 1)]
+    names = ("reference_1_rad", "reference_2_rad", "held_V", "output_rad", *moves)
+    return make_dataclass("LqgState", [(name, Any) for name in names], frozen=True)
 
 
 @dataclass(frozen=True)
-class LqgState(Generic[N]):
-    """What one axis remembers: filtered reference, the rotor's lag, angle, rate, missing voltage."""
-
-    reference_1_rad: N
-    reference_2_rad: N
-    rotor_V: N
-    angle_rad: N
-    rate_rad_s: N
-    missing_V: N
-
-
 class Lqg:
-    """The equations of one axis, name by name and operation by operation as in templates/lqg.c.j2."""
+    """The equations of one loop of up to `order` states, name by name and operation by operation as in templates/lqg.c.j2."""
 
-    AxisState = LqgState
+    order: int
+
+    @property
+    def AxisState(self) -> Any:
+        """See `axis_state`."""
+        return axis_state(self.order)
 
     def axis_rest(
         self,
@@ -84,118 +83,136 @@ class Lqg:
         reference_rad: N,
         angle_rad: N,
         schedule_rad: N,
-    ) -> LqgState[N]:
-        """The operating point at this elevation: the rotor at the speed that holds the arm there, the arm at rest, nothing missing."""
-        limit_rad = axis.gains.angle_max_rad
+    ) -> Any:
+        """The operating point: the input that holds the output where it is, which does not move."""
         rest_V = polynomial(axis.feedforward_V, schedule_rad, law.zero)
-        return LqgState(
-            reference_rad,
-            reference_rad,
-            arithmetic.saturate(rest_V, axis.u_min_V, axis.u_max_V, law.zero),
-            arithmetic.clamp(angle_rad, -limit_rad, limit_rad),
-            law.zero,
-            law.zero,
-        )
+        held_V = arithmetic.saturate(rest_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
+        output_rad = arithmetic.clamp(angle_rad, -axis.gains.y_max_rad, axis.gains.y_max_rad)
+        return self.AxisState(reference_rad, reference_rad, held_V, output_rad, *[law.zero] * self.order)
 
     def axis_step(
-        self,
-        law: LawNumbers[Any],
-        axis: AxisNumbers[Any],
-        arithmetic: Decisions[Any],
-        state: LqgState[Any],
-        sample: Sample[Any],
-    ) -> tuple[LqgState[Any], Any]:
-        """(C.12), (C.13), the limits, (C.8) to (C.11)."""
-        gains, psi_rad = axis.gains, sample.schedule_rad
+        self, law: LawNumbers[Any], axis: AxisNumbers[Any], arithmetic: Decisions[Any], state: Any, sample: Sample[Any]
+    ) -> tuple[Any, Any]:
+        """(C.11), (C.12) with the limits, (C.13)."""
+        gains, y_max_rad = axis.gains, axis.gains.y_max_rad
 
-        def at(coefficients: Any) -> Any:
-            return polynomial(coefficients, psi_rad, law.zero)
+        def at(coefficients: Any) -> list[Any]:
+            return [polynomial(entry, sample.schedule_rad, law.zero) for entry in coefficients]
 
-        innovation_rad = sample.angle_rad - state.angle_rad
-        x_rad = state.angle_rad + at(gains.l_x) * innovation_rad
-        v_rad_s = state.rate_rad_s + at(gains.l_v) * innovation_rad
-        d_V = state.missing_V + at(gains.l_d) * innovation_rad
-        d_V = arithmetic.saturate(d_V, -gains.missing_max_V, gains.missing_max_V, law.zero)
+        a, b, k, l = at(gains.a), at(gains.b), at(gains.k_V_rad), at(gains.l)  # noqa: E741
+        innovation_rad = sample.angle_rad - state.output_rad
+        output_rad = state.output_rad + l[0] * innovation_rad
+        moves_rad = [
+            getattr(state, f"move_{index}_rad") + l[index] * innovation_rad for index in range(1, self.order + 1)
+        ]
 
-        m_V = arithmetic.saturate(state.rotor_V, axis.u_min_V, axis.u_max_V, law.zero)
-        feedback_V = (
-            at(gains.k_m) * (m_V + d_V - sample.u_ff_V)
-            + at(gains.k_x) * (x_rad - state.reference_2_rad)
-            + at(gains.k_v) * v_rad_s
-        )
-        u_V = sample.u_ff_V - d_V - feedback_V
-        limited_V: Any = arithmetic.saturate(u_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
+        held_V = arithmetic.saturate(state.held_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
+        change_V = k[0] * (state.reference_2_rad - output_rad)
+        for gain, move_rad in zip(k[1:], moves_rad, strict=True):
+            change_V = change_V - gain * move_rad
+        limited_V: Any = arithmetic.saturate(held_V + change_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
 
-        step_V = limited_V - m_V
-        p_V = m_V + d_V - polynomial(axis.feedforward_V, psi_rad, law.zero)
-        x_rad = x_rad + (at(gains.beta_p) * p_V + at(gains.beta_v) * v_rad_s + at(gains.beta_u) * step_V)
-        v_rad_s = v_rad_s + (at(gains.gamma_p) * p_V + at(gains.gamma_v) * v_rad_s + at(gains.gamma_u) * step_V)
-        remembered = LqgState(
-            state.reference_1_rad,
-            state.reference_2_rad,
-            m_V + at(gains.alpha) * step_V,
-            arithmetic.saturate(x_rad, -gains.angle_max_rad, gains.angle_max_rad, law.zero),
-            arithmetic.saturate(v_rad_s, -gains.rate_max_rad_s, gains.rate_max_rad_s, law.zero),
-            d_V,
-        )
-        return remembered, limited_V
+        step_V, first_rad = limited_V - held_V, moves_rad[0]
+        for index in range(self.order):
+            move_rad = moves_rad[index] - a[index] * first_rad + b[index] * step_V
+            if index + 1 < self.order:
+                move_rad = move_rad + moves_rad[index + 1]
+            moves_rad[index] = arithmetic.saturate(move_rad, -y_max_rad, y_max_rad, law.zero)
+        output_rad = arithmetic.saturate(output_rad + moves_rad[0], -y_max_rad, y_max_rad, law.zero)
+        references_rad = (state.reference_1_rad, state.reference_2_rad)
+        return self.AxisState(*references_rad, limited_V, output_rad, *moves_rad), limited_V
 
 
 def design(points: Points) -> LawTable[LqgGains]:
-    """Both axes from Riccati equations at each operating point, fitted over the elevation."""
-    values = {axis: _values(points, axis) for axis in AXES}
-    degrees = {name: max(_degree(points, values[axis][name]) for axis in AXES) for name in NAMES}
-    axes = {axis: axis_table(points, axis, _gains(points, axis, values[axis], degrees), 0.0) for axis in AXES}
-    return law_table("lqg", points, axes, {axis: vars(WEIGHTS[axis]) for axis in AXES})
+    """All loops from Riccati equations at each operating point, fitted over the schedule, at the first speed of SLOWER that they hold.
+
+    Raises BadInput where even at the last one a loop falls below a margin of [design], or all together are unstable.
+    """
+    for share in SLOWER:
+        speeds = {loop.axis: wished_speeds(points.settings.axis(loop.axis), share) for loop in points.settings.loops}
+        gains = _all_gains(points, speeds)
+        try:
+            _judge(points, gains)
+        except BadInput:
+            if share == SLOWER[-1]:
+                raise
+            continue
+        axes = {axis: axis_table(points, axis, own, 0.0) for axis, own in gains.items()}
+        return law_table("lqg", points, axes, {axis: _origin(entry) for axis, entry in speeds.items()})
+    raise AssertionError
 
 
-NAMES = tuple(LqgGains.__dataclass_fields__)[:13]
-FIT = 0.08
+def _all_gains(points: Points, speeds: Mapping[str, Speeds]) -> dict[str, LqgGains]:
+    values = {axis: _values(points, axis, entry) for axis, entry in speeds.items()}
+    order = max(len(entry["a"]) for entry in values.values())
+    degrees = {kind: max(_degree(points, entry[kind]) for entry in values.values()) for kind in KINDS}
+    return {axis: _gains(points, axis, entry, order, degrees) for axis, entry in values.items()}
 
 
-def _values(points: Points, axis: str) -> dict[str, Array]:
-    """Each coefficient at the operating points (points,)."""
-    resolution_rad = points.bound.plant.sensors[points.settings.loop(axis).output]
-    Ts_s, weights = points.settings.sample_period_s, WEIGHTS[axis]
-    designs = [gains_at(plant, weights, Ts_s, resolution_rad) for plant in points.behind_one_lag(axis)]
-    return {name: np.array([entry[name] for entry in designs]) for name in NAMES}
+def _values(points: Points, axis: str, speeds: Speeds) -> dict[str, Array]:
+    """Each kind of coefficient at the operating points, (coefficients, points)."""
+    found = [gains_at(plant_polynomials(plant), speeds) for plant in points.sampled(axis)]
+    return {kind: np.array([getattr(entry, kind) for entry in found]).T for kind in KINDS}
 
 
 def _degree(points: Points, values: Array) -> int:
-    """The lowest degree that fits the values to FIT of their largest: every power costs cycles, and most coefficients hardly vary."""
+    """The lowest degree that fits each row of values to FIT of its largest."""
     most = points.settings.coefficient_degree
     for degree in range(most):
-        error = np.max(np.abs(polyval(points.psi_rad, fit(points.psi_rad, values, degree)) - values))
-        if error <= FIT * np.max(np.abs(values)):
+        errors = [np.max(np.abs(polyval(points.psi_rad, fit(points.psi_rad, row, degree)) - row)) for row in values]
+        if all(error <= FIT * np.max(np.abs(row)) for error, row in zip(errors, values, strict=True)):
             return degree
     return most
 
 
-def _gains(points: Points, axis: str, values: dict[str, Array], degrees: dict[str, int]) -> LqgGains:
+def _gains(points: Points, axis: str, values: Mapping[str, Array], order: int, degrees: Mapping[str, int]) -> LqgGains:
+    """The record of one loop; a loop of fewer states than `order` has moves that stay 0."""
+
+    def fitted(kind: str, count: int) -> tuple[Polynomial, ...]:
+        rows = [stored_fit(points.psi_rad, row, degrees[kind]) for row in values[kind]]
+        return (*rows, *[(0.0,) * (degrees[kind] + 1)] * (count - len(rows)))
+
     return LqgGains(
-        **{name: stored_fit(points.psi_rad, values[name], degrees[name]) for name in NAMES},
-        angle_max_rad=ANGLE_MAX_RAD,
-        rate_max_rad_s=RATE_MAX_RAD_S,
-        missing_max_V=MISSING_MAX_V,
-    )
+        fitted("a", order), fitted("b", order), fitted("k", order + 1), fitted("l", order + 1),
+        largest_output(points.settings.axis(axis)),
+    )  # fmt: skip
+
+
+def _judge(points: Points, gains: Mapping[str, LqgGains]) -> None:
+    """Raise BadInput naming operating point and margin that a loop does not hold, or where all of them together are unstable."""
+    sampled = {axis: points.sampled(axis) for axis in gains}
+    for index, (psi_rad, whole) in enumerate(zip(points.psi_rad.tolist(), points.whole(), strict=True)):
+        controllers = {axis: controller_at(own, psi_rad) for axis, own in gains.items()}
+        for axis, controller in controllers.items():
+            plant = plant_polynomials(sampled[axis][index])
+            demand_margins(points.settings, points.settings.place(axis, psi_rad), open_loop(controller, plant))
+        together = coupled_poles(whole, tuple(controllers.values()))
+        demand_stable("slowest pole of all loops together", points.settings.place("all axes", psi_rad), together)
+
+
+def _origin(speeds: Speeds) -> dict[str, Any]:
+    return {
+        "poles_rad_s": [[-speed, 0.0] for speed in plain(vars(speeds).values())],
+        "rule": "zero of the weighted error, geometric mean of the regulator's poles, of the filter's",
+    }
 
 
 CONTROLLER = EquationController(
     name="lqg",
     title="LQG: Kalman filter and LQR, scheduled",
     source="ours: what the papers' controllers are to be beaten by",
-    plants="a helicopter of two axes, each behind one rotor lag, as `ce150`, on which it settles",
-    needs="its filter knows a rotor's lag and an arm that gravity turns",
-    note=(
-        "is a Kalman filter, which knows the rotor's lag and estimates the voltage that is missing for whatever the plant file "
-        "does not know, and an LQR on its estimate, both from Riccati equations at the 17 operating points and scheduled by "
-        "polynomials in the elevation. That estimate is the integral action, and as the filter is told the limited voltage "
-        "nothing winds up, so its references need no filter. Its weights are, of some twenty sets an axis, those of least IAE "
-        "that overshot by less than 1 % on a hundred spread plants of seed 101, which are not those below, with no more travel of the "
-        "voltage than the scheduled law's without a roll-off (13.9 V/s), begun there as if its rotors stood still. In the air it "
-        "begins at the operating point: its rotors turn as fast as holds the arm where it is."
+    plants=(
+        "any plant of one to four loops of up to five states, as `ce150`, that holds the margins of [design] over its range, and settles"
     ),
-    equations=Lqg(),
+    note=(
+        "is a Kalman filter of each loop's output and its moves, and an LQR that moves the input by what the filter says, both from "
+        "Riccati equations at the operating points and scheduled by polynomials. Written in moves it needs no operating "
+        "point, integrates, and, as the filter is told the limited voltage, does not wind up; so its references need no filter. Its "
+        "weights follow from the plant file's poles alone: the regulator's have seven tenths of their geometric mean, the filter's four "
+        "times it, and the error is weighted with its rate over half of it. "
+        "It begins with the voltage that holds the arm where it is."
+    ),
+    equations=lambda table: Lqg(len(table.axes[0].gains.a)),
     gains=LqgGains,
     tables=design,
     template="lqg.c.j2",

@@ -15,18 +15,16 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from codegen.law_frame import LawNumbers, Sample
-from controllers.equations.designing import Points, axis_table, law_table
+from controllers.equations.designing import Points, axis_table, largest_output, law_table
 from controllers.equations.equation_controller import EquationController
 from controllers.equations.frame import AxisNumbers, Decisions
 from controllers.equations.tuned import Numbers, OpenNumber, Tunable, tuned
-from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
+from controllers.pid_tuning import Tuning, tune
 from design.table import limits_V, plain
 from records.law_table import LawTable
 from records.table import AXES, lag_gain
 
 N = TypeVar("N")
-
-ANGLE_MAX_RAD = 8.0  # no shaft turns so far; a filter beyond comes from a broken state
 
 
 @dataclass(frozen=True)
@@ -39,7 +37,7 @@ class PidGains:
     filter_gain: float
     tracking_gain: float
     i_max_V: float
-    angle_max_rad: float
+    y_max_rad: float
 
 
 @dataclass(frozen=True)
@@ -67,7 +65,7 @@ class Pid:
         schedule_rad: N,
     ) -> PidState[N]:
         """The filters at the angle, nothing integrated."""
-        filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)
+        filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.y_max_rad, axis.gains.y_max_rad)
         return PidState(reference_rad, reference_rad, filtered_rad, law.zero)
 
     def axis_step(
@@ -82,7 +80,7 @@ class Pid:
         gains, angle_rad = axis.gains, sample.angle_rad
         e_rad = state.reference_2_rad - angle_rad
         filtered_rad = state.filtered_rad + gains.filter_gain * (angle_rad - state.filtered_rad)
-        filtered_rad = arithmetic.saturate(filtered_rad, -gains.angle_max_rad, gains.angle_max_rad, law.zero)
+        filtered_rad = arithmetic.saturate(filtered_rad, -gains.y_max_rad, gains.y_max_rad, law.zero)
         v_V = gains.k_p_V_rad * e_rad + state.integral_V - gains.k_d_Tf_V_rad * (angle_rad - filtered_rad)
         u_V = v_V + sample.u_ff_V
         limited_V: Any = arithmetic.saturate(u_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
@@ -92,24 +90,22 @@ class Pid:
 
 
 def design(points: Points) -> LawTable[PidGains]:
-    """Both axes as the plant file has tuned them, or tuned on its operating points; raises BadInput where no gains hold the sensitivity."""
+    """All axes as the plant file has tuned them, or tuned on its operating points; raises BadInput where no gains hold the sensitivity."""
     found = tuned(points, "pid", TUNABLE)
     if found is not None:
         return _tuned_table(points, found)
-    for axis in AXES:
-        points.behind_one_lag(axis)
-    tunings = {axis: tune(points.sampled(axis), axis) for axis in AXES}
+    tunings = {loop.axis: tune(points, loop.axis) for loop in points.settings.loops}
     axes = {axis: axis_table(points, axis, _gains(points, axis, tuning)) for axis, tuning in tunings.items()}
-    return law_table("pid", points, axes, {axis: _origin(axis, tuning) for axis, tuning in tunings.items()})
+    return law_table("pid", points, axes, {axis: _origin(tuning) for axis, tuning in tunings.items()})
 
 
 FLOWN = "design.tuned"
-RULE = "largest integral gain with max |1/(1 + L)| <= Ms_max at every operating point and Ti >= 4 Td"
+RULE = "largest integral gain with max |1/(1 + L)| <= Ms_max at every operating point, Ti >= 4 Td, no faster than the wished poles"
 
 
-def _origin(axis: str, tuning: Tuning) -> dict[str, Any]:
+def _origin(tuning: Tuning) -> dict[str, Any]:
     found = {name: plain([value])[0] for name, value in vars(tuning).items()}
-    return {**found, "rule": RULE, "Ms_max": LARGEST_SENSITIVITY[axis]}
+    return {**found, "rule": RULE}
 
 
 def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
@@ -122,13 +118,13 @@ def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
         filter_gain=lag_gain(tuning.filter_s, Ts_s),
         tracking_gain=Ts_s / math.sqrt(tuning.k_d / tuning.k_i),
         i_max_V=high_V - low_V,
-        angle_max_rad=ANGLE_MAX_RAD,
+        y_max_rad=largest_output(points.settings.axis(axis)),
     )
 
 
 def _tuned_table(points: Points, found: Mapping[str, Numbers]) -> LawTable[PidGains]:
     tunings = {
-        axis: Tuning(n["k_p_V_rad"], n["k_i_V_rad_s"], n["k_d_V_s_rad"], n["filter_s"], math.nan)
+        axis: Tuning(n["k_p_V_rad"], n["k_i_V_rad_s"], n["k_d_V_s_rad"], n["filter_s"], math.nan, math.nan)
         for axis, n in found.items()
     }
     axes = {axis: axis_table(points, axis, _gains(points, axis, tuning)) for axis, tuning in tunings.items()}
@@ -154,20 +150,20 @@ CONTROLLER = EquationController(
     title="PID",
     source="seed 001, section 5.2.2, which prints no gains",
     plants=(
-        "a helicopter of two axes, each behind one rotor lag, as `ce150`, on which one set of gains an axis is robust at every elevation "
-        "of its range, and settles; any other on which the gains of its [design.tuned.pid] do"
+        "any plant of one to four loops, as `ce150`, on which one set of gains a loop is robust over its range, and settles; else one on "
+        "which the gains of its [design.tuned.pid] do"
     ),
-    needs="its gains are sought over elevations, behind one rotor lag an axis",
     note=(
-        "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 3 (elevation) and 2 (azimuth) at "
-        "every operating point, with Ti >= 4 Td and Tf = Td/10; the elevation's bound is 3 because one set of gains reaches no less than "
-        "2.5 over +-40 deg. The derivative is of the filtered angle, the integral is held by back-calculation, references are filtered "
-        "as the scheduled law's. Ti >= 4 Td was added when the azimuth overshot by 55 % without it. Where a plant file has "
-        "[design.tuned.pid], as `plants/ce150_velagic.toml`, gains and Tf are those: `twinlaw design --controller pid --tune SEED` finds "
-        "them by differential evolution, as those of the least mean |error| of both axes through a flight of 120 s on that plant "
+        "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 2, or where no gains do that below 3, "
+        "at every operating point, with Ti >= 4 Td, Tf = Td/10 and a crossover below the wished poles' geometric mean. One set of gains "
+        "reaches no less than 2.5 on the CE150's elevation over +-40 deg. The derivative is of the filtered angle, the integral is held by "
+        "back-calculation, references are filtered as the scheduled law's. Ti >= 4 Td was added when the azimuth overshot by 55 % without "
+        "it. Where a plant file has [design.tuned.pid], as `plants/ce150_velagic.toml`, gains and Tf are those: `twinlaw design "
+        "--controller pid --tune SEED` finds them by differential evolution, as those of the least mean |error| of both axes through a "
+        "flight of 120 s on that plant "
         "(`verification/comparison/tuning.py`)."
     ),
-    equations=Pid(),
+    equations=lambda _: Pid(),
     gains=PidGains,
     tables=design,
     template="pid.c.j2",

@@ -216,7 +216,13 @@ def content_of(table: Table[Any]) -> dict[str, Any]:
 
 
 def _told_axis(loop: Loop, axis: Any) -> dict[str, Any]:
-    return {loop.own(name): value for name, value in asdict(axis).items()}
+    return _in_units(loop, asdict(axis))
+
+
+def _in_units(loop: Loop, section: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        loop.own(name): _in_units(loop, value) if isinstance(value, dict) else value for name, value in section.items()
+    }
 
 
 def _told_loop(loop: Loop) -> dict[str, Any]:

@@ -82,19 +82,19 @@ def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
     legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point.x0)]
     at_s = 0.0
     for place, axis, centre_rad, loop in zip(wires.outputs, table.axes, middle_rad, table.loops, strict=True):
-        half_rad, hold_s = 0.5 * (axis.reference_max_rad - axis.reference_min_rad), _hold_s(table, axis, loop.axis)
+        half_rad, held_s = 0.5 * (axis.reference_max_rad - axis.reference_min_rad), hold_s(table, axis, loop.axis)
         moved = [
-            Leg(at_s + index * hold_s, math.degrees(centre_rad + share * half_rad))
+            Leg(at_s + index * held_s, math.degrees(centre_rad + share * half_rad))
             for index, share in enumerate(STEP_SHARES)
         ]
         legs[place] = (replace(moved[0], at_s=0.0), *moved[1:])
-        at_s += len(STEP_SHARES) * hold_s
+        at_s += len(STEP_SHARES) * held_s
     each = zip(legs, bound.encoder_steps, strict=True)
     return manoeuvre("steps", point.x0, at_s, table.sample_period_s, [on_encoder_steps(*pair) for pair in each])
 
 
-def _hold_s(table: Table[Any], axis: Any, name: str) -> float:
-    """How long each step is left alone."""
+def hold_s(table: Table[Any], axis: Any, name: str) -> float:
+    """How long a step of one loop is left alone [s]; a table that states no poles is as slow as 1 rad/s."""
     poles = table.origin.get(name, {}).get("poles_rad_s", [[-1.0, 0.0]])
     slowest_s = 1.0 / max(min(abs(real) for real, _ in poles), 1e-3)
     wanted_s = float(TIME_CONSTANTS * (slowest_s + 2.0 * axis.prefilter_time_constant_s))

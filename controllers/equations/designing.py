@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 from design.discretise import SampledPlant, sample
 from design.linearise import LinearPlant, linearise, of_loops, subsystem
 from design.operating_points import equilibria, grid
-from design.settings import DesignSettings
+from design.settings import AxisSettings, DesignSettings
 from design.table import frame_entries
 from records.errors import BadInput
 from records.law_table import AxisTable, LawTable
-from records.table import AXES
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
@@ -21,6 +20,9 @@ from sim.equilibrium import OperatingPoint
 Array = NDArray[np.float64]
 G = TypeVar("G")
 STATES = 3  # of an axis behind one rotor lag
+# Beyond so many times the largest reference a remembered output comes from a broken state: a rig that is thrown off, or turned once more,
+# is not so far away.
+OUTPUT_RANGES = 16.0
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,8 @@ class Points:
 
     def axis(self, name: str) -> tuple[LinearPlant, ...]:
         """The part of each from the axis' input to its angle."""
-        return tuple(subsystem(self.bound, plant, self.settings.loop(name)) for plant in self.linear)
+        loops = self.settings.loops
+        return tuple(subsystem(self.bound, plant, self.settings.loop(name), loops) for plant in self.linear)
 
     def behind_one_lag(self, name: str) -> tuple[LinearPlant, ...]:
         """The same of an axis behind one rotor lag; raises BadInput for another."""
@@ -58,6 +61,16 @@ class Points:
         return tuple(sample(of_loops(self.bound, plant, loops), period_s) for plant in self.linear)
 
 
+def mean_speed_rad_s(wishes: AxisSettings) -> float:
+    """The geometric mean of all wished poles' distances from the origin."""
+    return float(np.exp(np.mean(np.log(np.abs(np.array(wishes.placed_rad_s))))))
+
+
+def largest_output(wishes: AxisSettings) -> float:
+    """What neither a measurement nor what a law remembers of it exceeds unless its state is broken, in the output's unit."""
+    return OUTPUT_RANGES * max(abs(wishes.reference_min_rad), abs(wishes.reference_max_rad))
+
+
 def points_of(bound: BoundPlant, settings: DesignSettings) -> Points:
     """The operating points of the nominal plant: controllers are designed without added effects. Raises BadInput for one out of reach."""
     seen = without_effects(bound) if bound.effects else bound
@@ -75,12 +88,13 @@ def axis_table(points: Points, axis: str, gains: G, prefilter_time_constant_s: f
 
 
 def law_table(controller: str, points: Points, axes: dict[str, AxisTable[G]], origin: dict[str, Any]) -> LawTable[G]:
-    """The table of both axes."""
+    """The table of all axes."""
     return LawTable(
         controller=controller,
         plant=points.bound.plant.name,
         sample_period_s=points.settings.sample_period_s,
         schedule=points.settings.schedule,
-        axes=tuple(axes[name] for name in AXES),
+        axes=tuple(axes[loop.axis] for loop in points.settings.loops),
+        loops=points.settings.loops,
         origin=origin,
     )

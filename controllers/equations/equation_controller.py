@@ -21,21 +21,22 @@ from sim.loop import Controller
 class EquationController:
     """A row of the table.
 
-    `needs` says why it is no other plant's. `gains` is the record of one axis' own numbers, `tables` designs at the operating points,
-    `template` is its file in controllers/templates; `tunable` is what a plant's file may say of it.
+    `needs` says why it is the helicopter's alone, None where it is any plant's. `equations` are those of a table, `gains` is the record of
+    one axis' own numbers, `tables` designs at the operating points, `template` is its file in controllers/templates; `tunable` is what a
+    plant's file may say of it.
     """
 
     name: str
     title: str
     source: str
     plants: str
-    needs: str
     note: str
-    equations: AxisEquations
+    equations: Callable[[LawTable[Any]], AxisEquations]
     gains: type
     tables: Callable[[Points], LawTable[Any]]
     template: str
     tunable: Tunable | None = None
+    needs: str | None = None
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> LawTable[Any]:
         """The table on this plant; raises BadInput where it cannot be designed."""
@@ -43,7 +44,8 @@ class EquationController:
 
     def points(self, bound: BoundPlant, settings: DesignSettings) -> Points:
         """What it is designed on; raises BadInput for a plant that it cannot have."""
-        demand_helicopter(bound, f"the controller {self.name!r}", self.needs)
+        if self.needs is not None:
+            demand_helicopter(bound, f"the controller {self.name!r}", self.needs)
         return points_of(bound, settings)
 
     def text(self, table: LawTable[Any]) -> str:
@@ -52,12 +54,12 @@ class EquationController:
 
     def float_law(self, table: LawTable[Any]) -> Controller:
         """The law in double precision."""
-        return EquationLaw(self.equations, table)
+        return EquationLaw(self.equations(table), table)
 
     def twin(self, table: LawTable[Any]) -> Float32Twin:
         """The exact model of the float32 C."""
-        return EquationTwin(self.equations, table)
+        return EquationTwin(self.equations(table), table)
 
     def generate(self, table: LawTable[Any]) -> Mapping[str, str]:
         """law.h, law.c and law_self_test.c."""
-        return generate(table, self.equations, self.template)
+        return generate(table, self.equations(table), self.template)

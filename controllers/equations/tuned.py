@@ -9,7 +9,6 @@ from typing import Any
 
 from controllers.equations.designing import Points
 from records.law_table import LawTable
-from records.table import AXES
 from records.text import checks
 
 Numbers = Mapping[str, float]
@@ -45,8 +44,8 @@ def tuned(points: Points, controller: str, tunable: Tunable) -> dict[str, dict[s
     if controller not in section:
         return None
     mine, where = checks.table(section[controller], f"{where}.{controller}"), f"{where}.{controller}"
-    checks.keys(mine, where, AXES)
-    return {axis: _numbers(mine[axis], tunable.open[axis], f"{where}.{axis}") for axis in AXES}
+    checks.keys(mine, where, tuple(tunable.open))
+    return {axis: _numbers(mine[axis], wanted, f"{where}.{axis}") for axis, wanted in tunable.open.items()}
 
 
 def _numbers(entry: Any, wanted: tuple[OpenNumber, ...], where: str) -> dict[str, float]:

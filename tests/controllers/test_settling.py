@@ -50,7 +50,7 @@ def test_what_does_not_hold_its_plant_is_refused() -> None:
     gains = table.axes[0].gains
     turned = replace(gains, k_p_V_rad=-gains.k_p_V_rad, k_i_Ts_V_rad=0.0, k_d_Tf_V_rad=-gains.k_d_Tf_V_rad)
     wrong = changed_axis(table, "elevation", gains=turned)
-    with pytest.raises(BadInput, match="elevation that is"):
+    with pytest.raises(BadInput, match=r"an elevation that is .* off at the end of a flight from rest at psi"):
         demand_settling(CE150, wrong, row.float_law(wrong), row.plants)
 
 
@@ -69,7 +69,7 @@ def test_every_controller_says_for_which_plants_it_is() -> None:
     aeroshield = bind(load_plant(Path("plants/aeroshield.toml")))
     wished = bind(replace(aeroshield.plant, design=AEROSHIELD))
     settings = read_settings(wished)
-    for name in set(CONTROLLERS) - {"scheduled"}:
+    for name in ("instantaneous", "fuzzy"):
         with pytest.raises(BadInput, match=rf"plant for the controller '{name}'.*without the input u_M_V"):
             CONTROLLERS[name].design(wished, settings)
 

@@ -51,7 +51,7 @@ EXAMPLES = {
     "effect that a nominal model lacks": Example("imbalance", {"NAME": "imbalance"}),
     "kind of stage on the way of a reading": Example("OutputSteps", {}, ("sim", "diagnosis"), "sim/effects/"),
     "plant": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, beside="recordings/"),
-    "controller": Example("lqg", {"NAME": "lqg"}, beside="controllers/lqg_gains.py"),
+    "controller": Example("lqg", {"NAME": "lqg"}, beside="controllers/lqg_(gains|loop).py"),
     "verb": Example("doctor", {"NAME": "doctor"}, beside="Makefile"),
     "chip": Example("stm32g431", {"CHIP": "stm32g431"}),
     "threshold of the diagnosis": Example("SURELY = ", searched=("diagnosis",)),

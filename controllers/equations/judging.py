@@ -1,0 +1,31 @@
+"""Margins of a loop at every operating point, against those of [design]: what falls below is no controller for that plant."""
+
+from design.analysis.margins import margins
+from design.loop import OpenLoop, Poles, closed_loop_poles, slowest
+from design.settings import DesignSettings
+from records.errors import BadInput
+
+REMEDY = "choose slower poles in poles_rad_s, or another controller"
+
+
+def demand_margins(settings: DesignSettings, where: str, loop: OpenLoop) -> None:
+    """Raise BadInput naming the pole or margin that one loop does not hold `where` it stands."""
+    demand_stable("slowest closed-loop pole", where, closed_loop_poles(loop))
+    found, limits = margins(loop), settings.margins
+    if not found.sensitivity < limits.max_sensitivity:
+        _refuse("sensitivity max|1/(1 + L)|", where, f"{found.sensitivity:.4g}", f"below {limits.max_sensitivity:.4g}")
+    if not found.phase_rad >= limits.min_phase_margin_rad:
+        _refuse("phase margin", where, f"{found.phase_rad:.4g} rad", f"at least {limits.min_phase_margin_rad:.4g} rad")
+    if not found.delay_s >= limits.min_delay_margin_s:
+        _refuse("delay margin", where, f"{found.delay_s:.4g} s", f"at least {limits.min_delay_margin_s:.4g} s")
+
+
+def demand_stable(what: str, where: str, poles: Poles) -> None:
+    """Raise BadInput where a pole [rad/s] is not to the left of 0."""
+    pole_rad_s = slowest(poles)
+    if not pole_rad_s < 0.0:
+        _refuse(what, where, f"{pole_rad_s:.4g} rad/s", "below 0 rad/s")
+
+
+def _refuse(what: str, where: str, got: str, expected: str) -> None:
+    raise BadInput(what, where, got, expected, REMEDY)

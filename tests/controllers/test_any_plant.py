@@ -1,0 +1,153 @@
+"""PID and LQG of plants that are no helicopter: designed, equal in all bits, flown with their references, told in their own units."""
+
+import json
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import pytest
+
+from controllers import loading
+from controllers.equations.designing import mean_speed_rad_s
+from controllers.lqg_gains import FILTER_SPEED
+from controllers.settling import demand_settling
+from controllers.table import CONTROLLERS
+from design.settings import read_settings
+from records.errors import BadInput
+from records.plant import load_plant
+from rig.emulator.board import EmulatedBoard
+from rig.flight.target_law import TargetLaw
+from rig.programming.image import build_firmware
+from sim.bind import BoundPlant, bind
+from sim.tracking import left
+from tests.other_plants import plant_file
+from tests.own_plants import OwnPlant
+from tests.soak import SOAK
+from twinlaw.workflows.chain.flying import fly_double, fly_host
+from twinlaw.workflows.new_plant import plant_texts
+from verification.equality import compare
+from verification.host_law import HostLaw
+from verification.stimuli import standard_stimuli
+
+NAMES = ("pid", "lqg")
+PLANTS = ("aeroshield", "quanser_aero", "motor", "inverted_arm", "heater")
+STEPS = 100_000 if SOAK else 5_000
+TARGET_STEPS = 2_000 if SOAK else 300
+
+
+CHAIN = OwnPlant(
+    {"m": (1.0, 0.1, "kg")},
+    {"x_m": 1e-5},
+    """
+X, V, F, G, U = symbol("x_m"), symbol("v_m_s"), symbol("f_N"), symbol("g_N_s"), symbol("u_N_s2")
+return Model(
+    name="NAME", states=(X, V, F, G), inputs=(U,), outputs={"x_m": X}, parameters=PARAMETERS,
+    rates={X: V, F: G, G: U},
+    axes=(Axis("cart", X, V, p["m"], F, sympy.Integer(0), None, None),),
+    input_limits={U: (-100, 100)},
+    places=Places(
+        inputs={"input": InputPlace(U, "N s^-2", 10.0)},
+        axes={"cart": AxisPlace("x_m", "N", 1.0)},
+        sensors={"x_sensor": SensorPlace("x_m", "m")},
+    ),
+)
+""",
+)
+CHAIN_WISHES = """
+[design]
+[design.cart]
+poles_rad_s = [-2, -3, -4, -5, -12, -14, -16, -18]
+reference_min_m = -0.1
+reference_max_m = 0.1
+"""
+
+
+@cache
+def plant(name: str) -> BoundPlant:
+    """The plant of that name with wishes for its loops."""
+    with TemporaryDirectory() as folder:
+        if name != "heater":
+            return bind(load_plant(plant_file(name, Path(folder))))
+        for file, text in plant_texts("my_heater", "heater").items():
+            (Path(folder) / file).write_text(text, encoding="utf-8")
+        return bind(load_plant(Path(folder) / "plant.toml"))
+
+
+@cache
+def designed(name: str, of: str) -> Any:
+    """The table of a controller on a plant."""
+    return CONTROLLERS[name].design(plant(of), read_settings(plant(of)))
+
+
+@pytest.mark.parametrize("of", PLANTS)
+@pytest.mark.parametrize("name", NAMES)
+def test_it_flies_with_its_references_in_double_precision_and_as_generated(name: str, of: str) -> None:
+    # Truth: what settles leaves no reference, and the generated law flies as the law in double precision does.
+    table = designed(name, of)
+    demand_settling(plant(of), table, CONTROLLERS[name].float_law(table), "any plant")
+    flown = fly_double(plant(of), table)
+    assert left(flown.tracking) == ()
+    single = fly_host(plant(of), table, "float32")
+    for loop, exact, generated in zip(table.loops, flown.tracking, single.tracking, strict=True):
+        step = 0.02 * (table.axis(loop.axis).reference_max_rad - table.axis(loop.axis).reference_min_rad)
+        assert generated.mean_error_rad == pytest.approx(exact.mean_error_rad, abs=step)
+
+
+@pytest.mark.parametrize("of", PLANTS)
+@pytest.mark.parametrize("name", NAMES)
+def test_twin_and_host_are_equal_in_all_bits(name: str, of: str) -> None:
+    row, table = CONTROLLERS[name], designed(name, of)
+    twin, host = row.twin(table), HostLaw(row.generate(table), loops=table.loops)
+    stimuli = standard_stimuli(table, 6 * STEPS, words=twin.state_words)
+    result = compare(twin, host, [replace(entry, inputs=entry.inputs[:40]) for entry in stimuli])
+    assert (result.equality.mismatches, result.first_mismatch, host.self_test()) == (0, None, 0)
+
+
+@pytest.mark.parametrize(("name", "of"), [("lqg", "quanser_aero"), ("pid", "heater")])
+def test_host_and_target_are_equal_in_all_bits(name: str, of: str) -> None:
+    row, table = CONTROLLERS[name], designed(name, of)
+    texts = row.generate(table)
+    host = HostLaw(texts, loops=table.loops)
+    board = EmulatedBoard(build_firmware(texts, loops=table.loops).elf)
+    target = TargetLaw(board, state_words=host.state_words, loops=table.loops)
+    result = compare(host, target, standard_stimuli(table, TARGET_STEPS, words=host.state_words))
+    assert (result.equality.mismatches, target.self_test()) == (0, 0)
+    assert target.table_digest() == table.digest
+
+
+def test_loops_of_different_orders_share_one_law() -> None:
+    # Truth: a loop of fewer states has moves whose coefficients are 0.
+    gains = designed("lqg", "quanser_aero").axes[0].gains
+    assert len(gains.k_V_rad) == len(gains.l) == len(gains.a) + 1
+
+
+def test_coupled_loops_are_slowed_down_until_they_hold_together() -> None:
+    # Truth: both inputs of quanser_aero push both its axes, and at the wished speed the loops together are unstable or below a margin.
+    for of, axis, is_slowed in (("quanser_aero", "pitch", True), ("aeroshield", "arm", False)):
+        filter_rad_s = -designed("lqg", of).origin[axis]["poles_rad_s"][-1][0]
+        wished_rad_s = FILTER_SPEED * mean_speed_rad_s(read_settings(plant(of)).axis(axis))
+        assert filter_rad_s < 0.9 * wished_rad_s if is_slowed else filter_rad_s == pytest.approx(wished_rad_s, rel=1e-6)
+
+
+def test_a_table_states_its_gains_in_its_loop_s_units_and_reads_back(tmp_path: Path) -> None:
+    table = designed("pid", "heater")
+    text = CONTROLLERS["pid"].text(table)
+    gains = json.loads(text)[table.loops[0].axis]["gains"]
+    assert {"k_p_W_K", "y_max_K"} <= set(gains)
+    (tmp_path / "controller.json").write_text(text, encoding="utf-8")
+    assert loading.load(tmp_path / "controller.json")[1] == table
+
+
+def test_what_three_gains_cannot_hold_is_refused_in_words(tmp_path: Path) -> None:
+    # Truth: four integrators in a row lag by 360 deg; a PID gives back less than 90.
+    path = CHAIN.write(tmp_path, "chain")
+    path.write_text(path.read_text() + CHAIN_WISHES)
+    chain = bind(load_plant(path))
+    with pytest.raises(
+        BadInput, match=r"PID of the cart: got no gains with that robustness .* three gains hold about two states"
+    ):
+        CONTROLLERS["pid"].design(chain, read_settings(chain))
+    assert np.isfinite(CONTROLLERS["lqg"].design(chain, read_settings(chain)).axes[0].gains.y_max_rad)
