@@ -16,3 +16,8 @@ def measured(value: float, column: str, digits: int = 3) -> str:
 def settling_text(time_s: float | None) -> str:
     """A time to settle, in s."""
     return "never" if time_s is None else f"{time_s:.2f} s"
+
+
+def small(value: float) -> str:
+    """Two decimals, or of what these do not show two digits: the flow of a pump in m3/s."""
+    return f"{value:.2f}" if value >= 0.1 or value == 0.0 else f"{value:.2g}"

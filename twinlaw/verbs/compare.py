@@ -1,4 +1,4 @@
-"""Compare the controllers of the papers: each as generated C on the same firmware, flown on the papers' own manoeuvres.
+"""Compare the controllers: each as generated C on the same firmware, flown on the papers' own manoeuvres, or on steps of each loop.
 
 Writes DIR/compare.json, DIR/controllers.md (of another plant than ce150: controllers-PLANT.md) with a plot of each figure, and for each
 controller DIR/NAME/ with its table, C and image. Those that cannot be designed for the plant are
@@ -15,10 +15,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from controllers.table import CONTROLLERS
-from design.structure import demand_helicopter
+from design.structure import missing
 from records.files import write_atomic
 from records.quality import quality_facts
-from records.table import AXES
 from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.pages.compare import tables
@@ -30,9 +29,9 @@ from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.verifying import STEPS
 from twinlaw.workflows.comparing import compare_controllers, demand_equal, design_controllers, eq26_errors
 from twinlaw.workflows.reading import load_bound
-from verification.comparison.conditions import EFFECTS
+from verification.comparison.conditions import EFFECTS, effects_of
 from verification.comparison.flights import Trial
-from verification.comparison.manoeuvres import figures
+from verification.comparison.manoeuvres import figures, spread_figure
 from verification.comparison.open_loop import fly_open_loop
 
 RUNS, SEED = 100, 2
@@ -48,8 +47,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--runs", type=options.count, default=RUNS, help="spread plants; default: %(default)s")
     options.seed(parser, "the spread", SEED)
     parser.add_argument(
-        "--effects", nargs="*", choices=EFFECTS, default=EFFECTS, metavar="EFFECT",
-        help=f"added one at a time, each at its reference size: {', '.join(EFFECTS)}; default: all",
+        "--effects", nargs="*", metavar="EFFECT",
+        help=f"added one at a time, each at its reference size; default, of a helicopter: {', '.join(EFFECTS)}; of another plant: all "
+        "that it may have",
     )  # fmt: skip
     parser.add_argument("--steps", type=options.count, default=STEPS, help="compared at least; default: %(default)s")
     sweeping.workers(parser)
@@ -60,10 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Design, verify, fly, write, tell, and fail where bits differ."""
     bound = load_bound(chosen.plant)
-    demand_helicopter(
-        bound, "the papers' controllers and manoeuvres", "they are the papers' own rules, flown through their figures"
-    )
-    wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
+    wanted = Wanted(Trial(chosen.runs, chosen.seed, effects_of(bound, chosen.effects)), chosen.steps)
     names = tuple(dict.fromkeys(chosen.controllers))
     crew = sweeping.crew_of(chosen)
     with crew():  # a cluster that is not there is told now, not after a minute of building
@@ -80,9 +77,9 @@ def run(chosen: argparse.Namespace) -> int:
         print(json.dumps(content))
     else:
         print(console.table(tables.cost_rows(rows), tables.cost_heading(rows)))
-        for axis in AXES:
-            print(f"\n{axis}, {wanted.trial.runs} plants within +-10 %")
-            print(console.table(tables.spread_rows(rows, axis), tables.SPREAD_HEADING))
+        for loop in rows[0].loops:
+            print(f"\n{loop.axis}, {wanted.trial.runs} plants within +-10 %")
+            print(console.table(tables.spread_rows(rows, loop), tables.SPREAD_HEADING))
         print(f"\n{console.table(tables.quality_rows(rows), tables.QUALITY_HEADING)}")
         for name, why in refused.items():
             print(f"\nnot designed: {name}: {why}")
@@ -106,7 +103,11 @@ def _write_page(
     alone = fly_open_loop(bound)
     if alone:
         write_atomic(chosen.out / f"{stem}-fig-18.svg", open_loop_plot(alone))
-    where = Where(_command(chosen), str(chosen.out), stem, OPEN_LOOP_CAPTION if alone else None)
+    titles = {name: figure.title for name, figure in figures(bound).items()}
+    caption = OPEN_LOOP_CAPTION if alone else None
+    where = Where(
+        _command(chosen), str(chosen.out), stem, caption, titles, spread_figure(bound), is_papers=not missing(bound)
+    )
     page: Path = chosen.out / f"{stem}.md"
     write_atomic(page, page_text(rows, told, where))
     return page
@@ -120,6 +121,6 @@ def _command(chosen: argparse.Namespace) -> str:
     for name, default in (("runs", RUNS), ("seed", SEED), ("steps", STEPS)):
         if getattr(chosen, name) != default:
             words += [f"--{name}", str(getattr(chosen, name))]
-    if tuple(chosen.effects) != EFFECTS:
+    if chosen.effects is not None:
         words += ["--effects", *chosen.effects]
     return shlex.join(words)

@@ -14,7 +14,7 @@ from design.settings import read_settings
 from records.errors import BadInput, VerificationFailed
 from records.files import write_atomic
 from records.law_table import LawTable
-from records.protocol import PROTOCOL
+from records.protocol import protocol_of
 from records.table import changed_axis
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
@@ -23,10 +23,9 @@ from sim.bind import BoundPlant
 from twinlaw.cli.console import stage
 from twinlaw.pages.compare.comparison import BoardCost, Built, Compared, Wanted
 from verification.comparison.eq26 import FormError, form_errors
-from verification.comparison.flights import AXES, FILTERS, Each, Law, fly_figures, judge
+from verification.comparison.flights import FILTERS, Each, Law, flown_law, fly_figures, judge
 from verification.comparison.tuning import tune, tuned_section
 from verification.equality import compare
-from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
@@ -73,12 +72,12 @@ def build_controller(bound: BoundPlant, name: str, table: Any, wanted: Wanted, f
     texts = row.generate(table)
     place = folder / name
     write_atomic(place / "controller.json", row.text(table))
-    for file, text in {**texts, **protocol_source(PROTOCOL)}.items():
+    for file, text in {**texts, **protocol_source(protocol_of(table.loops))}.items():
         write_atomic(place / "generated" / file, text)
     with stage(f"{name}: building the firmware"):
-        image = build_firmware(texts, place)
-    twin, host = row.twin(table), HostLaw(texts)
-    target = TargetLaw(EmulatedBoard(image.elf), state_words=twin.state_words)
+        image = build_firmware(texts, place, loops=table.loops)
+    twin, host = row.twin(table), HostLaw(texts, loops=table.loops)
+    target = TargetLaw(EmulatedBoard(image.elf), state_words=twin.state_words, loops=table.loops)
     stimuli = standard_stimuli(table, wanted.steps, words=twin.state_words)
     with stage(f"{name}: stepping twin, host and target side by side"):
         equality = tuple(compare(one, other, stimuli).equality for one, other in ((twin, host), (host, target)))
@@ -89,11 +88,11 @@ def build_controller(bound: BoundPlant, name: str, table: Any, wanted: Wanted, f
         flash_bytes=image.sizes.flash_bytes,
         ram_bytes=image.sizes.ram_bytes,
     )
-    with stage(f"{name}: flying the papers' manoeuvres"):
-        flights = fly_figures(bound, FlownLaw(texts), table.sample_period_s)
+    with stage(f"{name}: flying the manoeuvres"):
+        flights = fly_figures(bound, flown_law(bound, texts), table.sample_period_s)
     figures = {figure: flown.merits() for figure, flown in flights.items()}
     law = Law(texts, {share: _filtered(bound, row, table, share) for share in FILTERS})
-    return Built(row, law, table.digest, equality, mismatches, cost, flights, figures)
+    return Built(row, table.loops, law, table.digest, equality, mismatches, cost, flights, figures)
 
 
 def tuned_text(bound: BoundPlant, name: str, seed: int) -> str:
@@ -108,7 +107,7 @@ def tuned_text(bound: BoundPlant, name: str, seed: int) -> str:
 def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> Mapping[str, str]:
     """The controller's texts behind another reference filter, in shares of the plant file's time constants."""
     settings = read_settings(bound)
-    for axis in AXES:
+    for axis in (loop.axis for loop in settings.loops):
         time_constant_s = share * settings.axis(axis).prefilter_time_constant_s
         table = changed_axis(table, axis, prefilter_time_constant_s=time_constant_s)
     return row.generate(table)

@@ -1,14 +1,18 @@
 """Plants that are not as designed for: every uncertain parameter within +-10 %, and each effect that a diagnosis may find."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from design.structure import missing
+from records.errors import BadInput
 from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant
 
 SPREAD = 0.1
 
-# Effects on each place of the rig, at the size that the library calls one that may be met.
+# Effects on each place of the helicopter, at the size that the library calls one that may be met.
 EFFECTS = (
     "main_input.deadzone",
     "tail_input.deadzone",
@@ -27,6 +31,21 @@ EFFECTS = (
     "azimuth.rotor_acceleration",
     "psi_sensor.backlash",
 )
+
+
+def effects_of(bound: BoundPlant, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """The effects to be added one at a time: those that are wanted, else the helicopter's of EFFECTS, or all that another plant may have.
+
+    Raises BadInput for one that this plant cannot have.
+    """
+    known = tuple(library(bound))
+    if wanted is None:
+        return tuple(name for name in EFFECTS if name in known) if not missing(bound) else known
+    for name in wanted:
+        if name not in known:
+            expected = f"one of {', '.join(known)}"
+            raise BadInput("effect", f"plant {bound.plant.name!r}", name, expected, "choose others with --effects")
+    return tuple(wanted)
 
 
 def spread(bound: BoundPlant, runs: int, seed: int) -> NDArray[np.float64]:

@@ -7,18 +7,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from design.settings import read_settings
+from records.loops import LOOPS, Loop
 from records.plant import Plant
 from sim.bind import BoundPlant, bind
+from sim.loop import steps_a_sample
 from sim.manoeuvres import Manoeuvre
 from sim.simulate import simulate
+from sim.wiring import Wiring, wiring
 from verification.comparison.conditions import spread, with_effect
-from verification.comparison.manoeuvres import FIGURES, figures
+from verification.comparison.manoeuvres import figures, spread_figure
 from verification.comparison.measures import Merit, merit
 from verification.flown_law import FlownLaw
 
 Array = NDArray[np.float64]
-AXES = ("elevation", "azimuth")
-SPREAD_FIGURE = "fig-23"  # both axes move: the manoeuvre of spread and effects
 FILTERS = (1.0, 0.75, 0.5, 0.25, 0.0)  # of the plant file's prefilter_time_constant_s; 0 is no filter
 FILTERED = 20  # spread plants that are flown with each
 AT_ONCE = 25  # spread plants in one order: a second of work or less
@@ -26,17 +28,19 @@ AT_ONCE = 25  # spread plants in one order: a second of work or less
 
 @dataclass(frozen=True, eq=False)
 class Flown:
-    """A flight: references and angles (n, 2) in rad at t_s (n,), voltages (n, 2) in V."""
+    """A flight: references and outputs (n, loops) at t_s (n,), inputs (n, loops), in the units of their loops."""
 
     t_s: Array
     reference_rad: Array
     y_rad: Array
     u_V: Array
+    loops: tuple[Loop, ...] = LOOPS
 
     def merits(self) -> dict[str, Merit]:
         """The figures of merit by axis."""
         return {
-            axis: merit(self.t_s, self.reference_rad, self.y_rad, self.u_V, index) for index, axis in enumerate(AXES)
+            loop.axis: merit(self.t_s, self.reference_rad, self.y_rad, self.u_V, index, loop.output_unit == "rad")
+            for index, loop in enumerate(self.loops)
         }
 
 
@@ -71,8 +75,8 @@ class Law:
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """Flights of one law through SPREAD_FIGURE: its C, the plant as stated, then parameter vectors to fly it with, or one effect to add;
-    `share` where it is the law behind another reference filter."""
+    """Flights of one law through the plant's `spread_figure`: its C, the plant as stated, then parameter vectors to fly it with, or one
+    effect to add; `share` where it is the law behind another reference filter."""
 
     law: str
     texts: Mapping[str, str]
@@ -94,7 +98,23 @@ Merits = list[dict[str, dict[str, Any]]]  # plain data by axis, a flight each
 Each = Callable[[Callable[[Order], Merits], Sequence[Order]], Iterable[Merits]]
 
 
-def fly_figures(bound: BoundPlant, law: FlownLaw, sample_period_s: float) -> dict[str, Flown]:
+@dataclass(frozen=True, eq=False)
+class WiredLaw:
+    """A compiled law and how its loops are wired to the plant."""
+
+    law: FlownLaw
+    loops: tuple[Loop, ...]
+    wires: Wiring
+
+
+def flown_law(bound: BoundPlant, texts: Mapping[str, str]) -> WiredLaw:
+    """The law of the plant's loops, compiled; raises BadInput where the compiler refuses."""
+    loops = read_settings(bound).loops
+    wires = wiring(bound, loops)
+    return WiredLaw(FlownLaw(texts, loops, wires), loops, wires)
+
+
+def fly_figures(bound: BoundPlant, law: WiredLaw, sample_period_s: float) -> dict[str, Flown]:
     """One law through all figures on the plant as stated."""
     return {
         name: fly_plan(bound, law, entry.manoeuvre(bound, sample_period_s))[0] for name, entry in figures(bound).items()
@@ -104,7 +124,7 @@ def fly_figures(bound: BoundPlant, law: FlownLaw, sample_period_s: float) -> dic
 def judge(
     bound: BoundPlant, laws: Mapping[str, Law], sample_period_s: float, trial: Trial, each: Each = map
 ) -> dict[str, Judged]:
-    """Fly laws by name through SPREAD_FIGURE on every plant of the trial; `each` does it, as `map` does.
+    """Fly laws by name through the plant's `spread_figure` on every plant of the trial; `each` does it, as `map` does.
 
     Every law meets the same plants, AT_ONCE of them in one order, so that no answer depends on who flies the others.
     """
@@ -142,8 +162,9 @@ def _orders(
 
 def fly_order(order: Order) -> Merits:
     """The merits of an order's flights."""
-    bound, law = bind(order.plant), FlownLaw(order.texts)
-    both = FIGURES[SPREAD_FIGURE].manoeuvre(bound, order.sample_period_s)
+    bound = bind(order.plant)
+    law = flown_law(bound, order.texts)
+    both = figures(bound)[spread_figure(bound)].manoeuvre(bound, order.sample_period_s)
     if order.effect is not None:
         flown = fly_plan(with_effect(bound, order.effect), law, both)
     else:
@@ -151,12 +172,16 @@ def fly_order(order: Order) -> Merits:
     return [{axis: asdict(merit) for axis, merit in flight.merits().items()} for flight in flown]
 
 
-def fly_plan(bound: BoundPlant, law: FlownLaw, plan: Manoeuvre, p: Array | None = None) -> list[Flown]:
+def fly_plan(bound: BoundPlant, wired: WiredLaw, plan: Manoeuvre, p: Array | None = None) -> list[Flown]:
     """One flight for each row of `p` (runs, parameters), or one with the plant's own parameters."""
-    drive = law.controller(plan.t_s.size)
-    runs = simulate(bound, plan.t_s, plan.x0, drive, reference=plan.reference_rad, p=p, keep="uy")
+    drive = wired.law.controller(plan.t_s.size)
+    substeps = steps_a_sample(bound, plan)
+    runs = simulate(bound, plan.t_s, plan.x0, drive, reference=plan.reference_rad, p=p, substeps=substeps, keep="uy")
     assert runs.u is not None
     assert runs.y is not None
-    shape = (-1, plan.t_s.size, 2)
-    pairs = zip(runs.y.reshape(shape), runs.u.reshape(shape), strict=True)
-    return [Flown(plan.t_s, plan.reference_rad, y, u) for y, u in pairs]
+    outputs, inputs = list(wired.wires.outputs), list(wired.wires.inputs)
+    all_y, all_u = (values.reshape(-1, plan.t_s.size, values.shape[-1]) for values in (runs.y, runs.u))
+    reference = plan.reference_rad[:, outputs]
+    return [
+        Flown(plan.t_s, reference, y[:, outputs], u[:, inputs], wired.loops) for y, u in zip(all_y, all_u, strict=True)
+    ]

@@ -1,4 +1,4 @@
-"""The manoeuvres of the papers' figures: seed 001, Figs. 16 and 19-23, and seed 000, Fig. 13.
+"""The manoeuvres of a comparison: of the papers' figures, seed 001, Figs. 16 and 19-23, and seed 000, Fig. 13; of any other plant, steps.
 
 Duration and range of angles are those of each figure's axes; the levels and instants within them are ours, as the papers' texts state none.
 References end on whole encoder steps, where an integrating loop can come to rest.
@@ -9,9 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from design.settings import AxisSettings, read_settings
+from design.structure import missing
+from records.table import Table
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
-from sim.manoeuvres import Leg, Manoeuvre, at_rest, manoeuvre, on_encoder_steps
+from sim.manoeuvres import Leg, Manoeuvre, at_rest, manoeuvre, on_encoder_steps, steps
 
 
 @dataclass(frozen=True)
@@ -98,6 +101,38 @@ FIGURES: Mapping[str, Figure] = {
 }  # fmt: skip
 
 
-def figures(bound: BoundPlant) -> dict[str, Figure]:
-    """The figures that are flown on this plant."""
+@dataclass(frozen=True)
+class Steps:
+    """Steps of each loop in turn, as the project flies a plant that is no helicopter; as long for all controllers as [design] wishes."""
+
+    title: str = "Steps of each loop in turn"
+
+    def manoeuvre(self, bound: BoundPlant, sample_period_s: float) -> Manoeuvre:
+        """The manoeuvre on this plant; raises BadInput where the plant cannot rest at the start."""
+        settings = read_settings(bound)
+        poles = {entry.axis: [[pole.real, pole.imag] for pole in entry.poles_rad_s] for entry in settings.axes}
+        wished: Table[AxisSettings] = Table(
+            plant=bound.plant.name,
+            sample_period_s=sample_period_s,
+            schedule=settings.schedule,
+            axes=settings.axes,
+            loops=settings.loops,
+            origin={axis: {"poles_rad_s": entry} for axis, entry in poles.items()},
+        )
+        return steps(bound, wished)
+
+
+SPREAD_FIGURE = "fig-23"  # both axes move: the manoeuvre of spread and effects
+STEPS = "steps"
+
+
+def figures(bound: BoundPlant) -> dict[str, Figure | Steps]:
+    """The manoeuvres that are flown on this plant."""
+    if missing(bound):
+        return {STEPS: Steps()}
     return {name: figure for name, figure in FIGURES.items() if figure.model in (None, bound.model.name)}
+
+
+def spread_figure(bound: BoundPlant) -> str:
+    """The one on which plants with other parameters and effects are flown."""
+    return STEPS if missing(bound) else SPREAD_FIGURE

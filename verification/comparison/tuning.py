@@ -19,7 +19,8 @@ from controllers.equations.source import tunable_law
 from controllers.equations.tuned import OpenNumber, Tunable
 from records.errors import BadInput
 from records.table import AXES
-from verification.comparison.flights import fly_plan
+from sim.wiring import wiring
+from verification.comparison.flights import WiredLaw, fly_plan
 from verification.comparison.manoeuvres import TUNING
 from verification.flown_law import FlownLaw
 
@@ -52,13 +53,15 @@ def tune(row: EquationController, points: Points, seed: int) -> dict[str, dict[s
 
     bounds = _bounds(tunable)
     middle = tunable.table(points, _numbers(tunable, np.mean(bounds, axis=1)))
-    law = TunableLaw(tunable_law(row.generate(middle), tunable.template))
+    wires = wiring(points.bound, middle.loops)
+    law = TunableLaw(tunable_law(row.generate(middle), tunable.template), middle.loops, wires)
+    wired = WiredLaw(law, middle.loops, wires)
     plan = TUNING.manoeuvre(points.bound, points.settings.sample_period_s)
 
     def cost(x: Array) -> float:
         for index, axis in enumerate(tunable.table(points, _numbers(tunable, x)).axes):
             law.set_gains(index, tunable.flat(axis.gains))
-        flown = fly_plan(points.bound, law, plan)[0]
+        flown = fly_plan(points.bound, wired, plan)[0]
         error_rad = float(np.mean(np.sum(np.abs(flown.reference_rad - flown.y_rad), axis=1)))
         return error_rad if math.isfinite(error_rad) else math.inf
 

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from controllers.controller import Controller
+from records.loops import Loop
 from records.verification import Equality, equality_table
 from sim.bind import BoundPlant
 from verification.comparison.eq26 import FormError
-from verification.comparison.flights import AXES, Flown, Law, Trial
+from verification.comparison.flights import Flown, Law, Trial
 from verification.comparison.manoeuvres import figures
 from verification.comparison.measures import Merit
 
@@ -37,9 +38,10 @@ class BoardCost:
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """One controller on the board: its law, its table's digest, equality, cost; its flights through the figures, with merits."""
+    """One controller on the board: its loops and law, its table's digest, equality, cost; its flights through the figures, with merits."""
 
     row: Controller
+    loops: tuple[Loop, ...]
     law: Law
     digest: str
     equality: tuple[Equality, ...]
@@ -121,15 +123,23 @@ def _facts(row: Compared) -> dict[str, Any]:
         "equality": [equality_table(entry) for entry in row.equality],
         "self_test_mismatches": row.self_test_mismatches,
         "target": asdict(row.cost),
-        "figures": {
-            name: {axis: asdict(merit) for axis, merit in merits.items()} for name, merits in row.figures.items()
-        },
-        "spread": {axis: asdict(spread_of(row.spread, axis)) for axis in AXES},
-        "effects": {
-            name: {axis: asdict(merit) for axis, merit in merits.items()} for name, merits in row.effects.items()
-        },
+        "figures": {name: _told(row, merits) for name, merits in row.figures.items()},
+        "spread": {loop.axis: _own(loop, asdict(spread_of(row.spread, loop.axis))) for loop in row.loops},
+        "effects": {name: _told(row, merits) for name, merits in row.effects.items()},
         "filters": [
-            {"share": share, **{axis: asdict(spread_of(merits, axis)) for axis in AXES}}
+            {"share": share, **{loop.axis: _own(loop, asdict(spread_of(merits, loop.axis))) for loop in row.loops}}
             for share, merits in row.filters.items()
         ],
+    }
+
+
+def _told(row: Compared, merits: Mapping[str, Merit]) -> dict[str, Any]:
+    return {loop.axis: _own(loop, asdict(merits[loop.axis])) for loop in row.loops}
+
+
+def _own(loop: Loop, section: Mapping[str, Any]) -> dict[str, Any]:
+    """The same by names in the units of this loop's output and input."""
+    return {
+        f"{loop.own(name.removesuffix('_s'))}_s" if name.endswith(("_rad_s", "_V_s")) else loop.own(name): value
+        for name, value in section.items()
     }

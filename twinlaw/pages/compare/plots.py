@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from records.text.units import shown, unit_of
 from twinlaw.pages.compare.comparison import Compared
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid
 from verification.comparison.flights import Flown
@@ -17,7 +18,7 @@ MOST_POINTS = 1200
 
 
 def figure_plot(rows: Sequence[Compared], figure: str) -> str:
-    """Angles over their references and both voltages, all controllers, as SVG."""
+    """Outputs over their references and all inputs, all controllers, as SVG."""
     flown = {row.row.name: row.flights[figure] for row in rows}
     first = next(iter(flown.values()))
     looks = dict(zip(flown, zip(COLOURS, DASHES, strict=True), strict=False))
@@ -28,19 +29,16 @@ def figure_plot(rows: Sequence[Compared], figure: str) -> str:
             for name, array in values.items()
         ]
 
-    angles = {name: entry.y_rad for name, entry in flown.items()}
-    voltages = {name: entry.u_V for name, entry in flown.items()}
-    wanted = [
-        Curve(*_thinned(first.t_s, np.degrees(first.reference_rad[:, axis])), "reference", GREY, ":") for axis in (0, 1)
-    ]
-    degrees = 180.0 / math.pi
-    panels = (
-        Panel("elevation [deg]", [*curves(angles, 0, degrees), wanted[0]]),
-        Panel("azimuth [deg]", [*curves(angles, 1, degrees), wanted[1]]),
-        Panel("u_M [V]", sorted(curves(voltages, 0, 1.0), key=_travel, reverse=True)),
-        Panel("u_T [V]", sorted(curves(voltages, 1, 1.0), key=_travel, reverse=True)),
-    )
-    return grid([(panel,) for panel in panels], ("",), "time [s]", height_in=1.9)
+    outputs = {name: entry.y_rad for name, entry in flown.items()}
+    inputs = {name: entry.u_V for name, entry in flown.items()}
+    above, below = [], []
+    for index, loop in enumerate(rows[0].loops):
+        unit, scale = shown(loop.output)
+        wanted = Curve(*_thinned(first.t_s, scale * first.reference_rad[:, index]), "reference", GREY, ":")
+        above.append(Panel(f"{loop.axis} [{unit}]", [*curves(outputs, index, scale), wanted]))
+        commands = sorted(curves(inputs, index, 1.0), key=_travel, reverse=True)
+        below.append(Panel(f"{loop.voltage} [{unit_of(loop.input) or '1'}]", commands))
+    return grid([(panel,) for panel in (*above, *below)], ("",), "time [s]", height_in=1.9)
 
 
 def open_loop_plot(flown: Mapping[str, Flown]) -> str:

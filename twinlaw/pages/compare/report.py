@@ -1,18 +1,17 @@
 """docs/controllers.md as text, from a comparison."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from records.text.units import shown, unit_of
 from records.text.zeros import unsigned_zeros
 from toolchain.templates import text_templates
 from twinlaw.pages.compare import tables
 from twinlaw.pages.compare.comparison import Compared, Wanted, spread_of
 from twinlaw.templates import TEMPLATES
 from verification.comparison.eq26 import ANGLES, FormError
-from verification.comparison.flights import AXES, FILTERED
-from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.flights import FILTERED
 
 OVERSHOOT = 0.05
 OPEN_LOOP_CAPTION = (
@@ -33,17 +32,22 @@ class Told:
 
 @dataclass(frozen=True)
 class Where:
-    """The page's command and folder, how its files begin, and the caption of its picture without a controller, if it has one."""
+    """The page's command and folder, how its files begin, the caption of its picture without a controller, if it has one, the manoeuvres'
+    titles by name, which of them spread plants fly, and whether they are the papers' own."""
 
     command: str
     out: str
     stem: str
     open_loop: str | None
+    titles: Mapping[str, str]
+    spread_figure: str
+    is_papers: bool
 
 
 def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
     """The page; the same comparison gives the same bytes."""
-    effects = tables.effect_rows(rows)
+    loops = rows[0].loops
+    effects = tables.effect_rows(rows, where.spread_figure)
     return (
         text_templates(TEMPLATES)
         .get_template("controllers.md.j2")
@@ -52,6 +56,9 @@ def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
             out=where.out,
             stem=where.stem,
             open_loop=where.open_loop,
+            is_papers=where.is_papers,
+            whose={1: "the one axis", 2: "both axes"}.get(len(loops), "all axes"),
+            axes_iae=" / ".join(f"{loop.axis} in {shown(loop.output)[0]} s" for loop in loops),
             refused=[f"`{name}`: {why}" for name, why in told.refused.items()],
             unsettled=[f"`{name}`: {why}" for name, why in told.unsettled.items()],
             rows=[
@@ -63,15 +70,16 @@ def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
             ],
             notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
             cost=_markdown(tables.cost_heading(rows), tables.cost_rows(rows)),
-            figures=_figures(rows),
+            figures=_figures(rows, where.titles),
             eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(told.eq26)) if told.eq26 else "",
             angles=ANGLES,
             runs=told.wanted.trial.runs,
             seed=told.wanted.trial.seed,
             spread=[
-                (axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES
+                (loop.axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, loop)))
+                for loop in loops
             ],
-            filters=[(axis.capitalize(), _markdown(*tables.filter_rows(rows, axis))) for axis in AXES],
+            filters=[(loop.axis.capitalize(), _markdown(*tables.filter_rows(rows, loop))) for loop in loops],
             filtered_verdict=filtered_verdict(rows),
             filtered=min(FILTERED, told.wanted.trial.runs),
             effects=_markdown(*effects),
@@ -81,15 +89,15 @@ def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
     )
 
 
-def _figures(rows: Sequence[Compared]) -> list[dict[str, Any]]:
+def _figures(rows: Sequence[Compared], titles: Mapping[str, str]) -> list[dict[str, Any]]:
     """Each manoeuvre with its figures of merit, axis by axis."""
     return [
         {
             "name": name,
-            "title": FIGURES[name].title,
+            "title": titles[name],
             "tables": [
-                (axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, axis)))
-                for axis in AXES
+                (loop.axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, loop)))
+                for loop in rows[0].loops
             ],
         }
         for name in (rows[0].figures if rows else ())
@@ -99,16 +107,17 @@ def _figures(rows: Sequence[Compared]) -> list[dict[str, Any]]:
 def verdict(rows: Sequence[Compared]) -> str:
     """Who leads on the spread plants, by axis and figure of merit, in one sentence."""
     parts = []
-    for axis in AXES:
+    for loop in rows[0].loops:
+        axis, unit = loop.axis, shown(loop.output)[0]
         spread = {row.row.name: spread_of(row.spread, axis) for row in rows}
         held = {name: found for name, found in spread.items() if not found.unsettled} or spread
         iae = min(held, key=lambda name: held[name].median_iae_rad_s)
         swing = min(held, key=lambda name: held[name].worst_swing_V)
         overshoot = min(held, key=lambda name: held[name].worst_overshoot)
         parts.append(
-            f"{axis}: least IAE `{iae}` ({math.degrees(held[iae].median_iae_rad_s):.0f} deg s in the median), least overshoot "
+            f"{axis}: least IAE `{iae}` ({tables.integral(loop, held[iae].median_iae_rad_s)} {unit} s in the median), least overshoot "
             f"`{overshoot}` ({100.0 * held[overshoot].worst_overshoot:.1f} % at worst), least swing `{swing}` "
-            f"({held[swing].worst_swing_V:.1f} V)"
+            f"({held[swing].worst_swing_V:.1f} {unit_of(loop.input)})"
         )
     cheapest = min(rows, key=lambda row: row.cost.cycles_max)
     return (
@@ -121,10 +130,11 @@ def verdict(rows: Sequence[Compared]) -> str:
 def filtered_verdict(rows: Sequence[Compared]) -> str:
     """What each reaches behind the filter that suits it best: least median IAE among those with at most OVERSHOOT at worst."""
     parts = []
-    for axis in AXES:
+    for loop in rows[0].loops:
+        axis, unit = loop.axis, shown(loop.output)[0]
         best = sorted((found, row.row.name) for row in rows if (found := _best_filter(row, axis)) is not None)
         told = ", ".join(
-            f"`{name}` {math.degrees(iae):.0f} deg s ({tables.share(share)})" for (iae, share), name in best
+            f"`{name}` {tables.integral(loop, iae)} {unit} s ({tables.share(share)})" for (iae, share), name in best
         )
         parts.append(f"{axis}: {told or 'none'}")
     return (

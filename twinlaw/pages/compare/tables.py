@@ -4,13 +4,14 @@ import math
 from collections.abc import Mapping, Sequence
 
 from records.board import STM32G071
+from records.loops import Loop
+from records.text.units import shown, unit_of
 from twinlaw.pages.compare.comparison import Compared, spread_of
 from twinlaw.pages.compare.quality import axis_looks, controller_quality
-from twinlaw.pages.measured import settling_text
+from twinlaw.pages.measured import settling_text, small
 from twinlaw.pages.page import Row
 from twinlaw.pages.quality import colour_of, quality_sentence
 from verification.comparison.eq26 import FormError
-from verification.comparison.flights import AXES
 from verification.comparison.measures import Merit
 
 MERIT_HEADING: Row = (
@@ -95,43 +96,58 @@ def eq26_rows(errors: Mapping[tuple[str, str], FormError]) -> list[Row]:
     ]
 
 
-def figure_rows(rows: Sequence[Compared], figure: str, axis: str) -> list[Row]:
+def figure_rows(rows: Sequence[Compared], figure: str, loop: Loop) -> list[Row]:
     """The merits of one axis in one figure."""
-    return [(row.row.name, *_merit(row.figures[figure][axis])) for row in rows]
+    return [(row.row.name, *_merit(row.figures[figure][loop.axis], loop)) for row in rows]
 
 
-def _merit(merit: Merit) -> Row:
+def _merit(merit: Merit, loop: Loop) -> Row:
+    unit = unit_of(loop.input)
     return (
         f"{100.0 * merit.overshoot:.1f} %",
         settling_text(merit.settling_s),
-        f"{math.degrees(merit.steady_error_rad):.2f} deg",
-        f"{math.degrees(merit.largest_error_rad):.2f} deg",
-        f"{math.degrees(merit.iae_rad_s):.0f} deg s",
-        f"{merit.swing_V:.2f} V",
-        f"{merit.travel_V_s:.2f} V/s",
+        measured(loop, merit.steady_error_rad),
+        measured(loop, merit.largest_error_rad),
+        f"{integral(loop, merit.iae_rad_s)} {shown(loop.output)[0]} s",
+        f"{small(merit.swing_V)} {unit}".rstrip(),
+        f"{small(merit.travel_V_s)} {unit}/s",
         f"{merit.reversals_1_s:.1f} /s",
     )
 
 
-def spread_rows(rows: Sequence[Compared], axis: str) -> list[Row]:
+def measured(loop: Loop, value: float) -> str:
+    """An error as a person reads it: two decimals of a degree, three digits of anything else."""
+    unit, scale = shown(loop.output)
+    return f"{scale * value:.2f} {unit}" if unit == "deg" else f"{value:.3g} {unit}"
+
+
+def integral(loop: Loop, value: float) -> str:
+    """An IAE in the unit of `measured` times seconds, without it: whole degrees, three digits of anything else."""
+    unit, scale = shown(loop.output)
+    return f"{scale * value:.0f}" if unit == "deg" else f"{value:.3g}"
+
+
+def spread_rows(rows: Sequence[Compared], loop: Loop) -> list[Row]:
     """One axis over the spread plants."""
-    shown: list[Row] = []
+    output_unit, input_unit = shown(loop.output)[0], unit_of(loop.input)
+    shown_rows: list[Row] = []
     for row in rows:
-        found, runs = spread_of(row.spread, axis), len(row.spread)
-        shown.append(
+        found, runs = spread_of(row.spread, loop.axis), len(row.spread)
+        iae = f"{integral(loop, found.median_iae_rad_s)} / {integral(loop, found.worst_iae_rad_s)} {output_unit} s"
+        shown_rows.append(
             (
                 row.row.name,
                 f"{runs - found.unsettled} of {runs}",
                 f"{100.0 * found.worst_overshoot:.1f} %",
                 settling_text(found.worst_settling_s),
-                f"{math.degrees(found.worst_steady_error_rad):.2f} deg",
-                f"{math.degrees(found.median_iae_rad_s):.0f} / {math.degrees(found.worst_iae_rad_s):.0f} deg s",
-                f"{found.worst_swing_V:.2f} V",
-                f"{found.median_travel_V_s:.2f} V/s, {found.median_reversals_1_s:.1f} /s",
-                colour_of(axis_looks(row, axis)),
+                measured(loop, found.worst_steady_error_rad),
+                iae,
+                f"{small(found.worst_swing_V)} {input_unit}".rstrip(),
+                f"{small(found.median_travel_V_s)} {input_unit}/s, {found.median_reversals_1_s:.1f} /s",
+                colour_of(axis_looks(row, loop)),
             )
         )
-    return shown
+    return shown_rows
 
 
 def quality_rows(rows: Sequence[Compared]) -> list[Row]:
@@ -140,11 +156,11 @@ def quality_rows(rows: Sequence[Compared]) -> list[Row]:
     return [(name, str(quality.colour), quality_sentence(quality)) for name, quality in found]
 
 
-def filter_rows(rows: Sequence[Compared], axis: str) -> tuple[Row, list[Row]]:
+def filter_rows(rows: Sequence[Compared], loop: Loop) -> tuple[Row, list[Row]]:
     """Heading and rows: per reference filter and controller, median IAE and the worst overshoot."""
     heading = ("filter", *(row.row.name for row in rows))
     shares = rows[0].filters if rows else ()
-    return heading, [(share(part), *(_tracked(row.filters[part], axis) for row in rows)) for part in shares]
+    return heading, [(share(part), *(_tracked(row.filters[part], loop) for row in rows)) for part in shares]
 
 
 def share(part: float) -> str:
@@ -152,23 +168,29 @@ def share(part: float) -> str:
     return f"{100.0 * part:.0f} % of T" if part else "no filter"
 
 
-def _tracked(flown: Sequence[Mapping[str, Merit]], axis: str) -> str:
-    found = spread_of(flown, axis)
+def _tracked(flown: Sequence[Mapping[str, Merit]], loop: Loop) -> str:
+    found = spread_of(flown, loop.axis)
     lost = f", {found.unsettled} unsettled" if found.unsettled else ""
-    return f"{math.degrees(found.median_iae_rad_s):.0f} deg s, {100.0 * found.worst_overshoot:.1f} %{lost}"
+    iae = f"{integral(loop, found.median_iae_rad_s)} {shown(loop.output)[0]} s"
+    return f"{iae}, {100.0 * found.worst_overshoot:.1f} %{lost}"
 
 
-def effect_rows(rows: Sequence[Compared]) -> tuple[Row, list[Row]]:
-    """Heading and rows: per effect and controller, IAE and largest steady error of the worse axis."""
+def effect_rows(rows: Sequence[Compared], figure: str) -> tuple[Row, list[Row]]:
+    """Heading and rows: per effect and controller, IAE and the largest steady error of each axis; first `figure` without an effect."""
     heading = ("effect", *(row.row.name for row in rows))
-    lines = [(effect, *(_struck(row.effects[effect]) for row in rows)) for effect in (rows[0].effects if rows else ())]
-    nominal = ("none", *(_struck(row.figures["fig-23"]) for row in rows))
+    lines = [
+        (effect, *(_struck(row, row.effects[effect]) for row in rows)) for effect in (rows[0].effects if rows else ())
+    ]
+    nominal = ("none", *(_struck(row, row.figures[figure]) for row in rows))
     return heading, [nominal, *lines]
 
 
-def _struck(merits: Mapping[str, Merit]) -> str:
-    """IAE of elevation / azimuth in deg s, and the larger steady error; `lost` where a step never settles."""
-    iae = " / ".join(f"{math.degrees(merits[axis].iae_rad_s):.0f}" for axis in AXES)
-    steady = max(math.degrees(merit.steady_error_rad) for merit in merits.values())
+def _struck(row: Compared, merits: Mapping[str, Merit]) -> str:
+    """IAE of all axes, and the larger steady error where all are angles, else each one's; `unsettled` where a step never settles."""
+    iae = " / ".join(integral(loop, merits[loop.axis].iae_rad_s) for loop in row.loops)
     unsettled = any(merit.settling_s is None for merit in merits.values())
-    return f"{iae}, {steady:.1f} deg{' (unsettled)' if unsettled else ''}"
+    if {loop.output_unit for loop in row.loops} == {"rad"}:
+        steady = f"{math.degrees(max(merit.steady_error_rad for merit in merits.values())):.1f} deg"
+    else:
+        steady = " / ".join(measured(loop, merits[loop.axis].steady_error_rad) for loop in row.loops)
+    return f"{iae}, {steady}{' (unsettled)' if unsettled else ''}"

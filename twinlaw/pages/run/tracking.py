@@ -8,7 +8,7 @@ from typing import Any
 from records.quality import OVERSHOOT, STEADY_ERROR, STEADY_SHARE, Colour, Look, Quality, flag
 from records.text.units import unit_of, unit_suffix
 from sim.tracking import Tracking, left
-from twinlaw.pages.measured import settling_text
+from twinlaw.pages.measured import settling_text, small
 from twinlaw.pages.page import Row
 from twinlaw.pages.quality import colour_of
 
@@ -44,17 +44,12 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             _told(entry, entry.mean_error_rad),
             _told(entry, entry.push_rad) if len(tracking) > 1 else "no other loop",
             entry.input,
-            f"{_small(entry.activity.travel_V_s)} {unit_of(entry.input)}/s",
+            f"{small(entry.activity.travel_V_s)} {unit_of(entry.input)}/s",
             f"{entry.activity.reversals_1_s:.1f} /s",
             colour_of(tracking_looks(entry)),
         )
         for entry in tracking
     ]
-
-
-def _small(value: float) -> str:
-    """Two decimals, or of what these do not show two digits: the flow of a pump in m3/s."""
-    return f"{value:.2f}" if value >= 0.1 or value == 0.0 else f"{value:.2g}"
 
 
 def left_sentence(tracking: Sequence[Tracking]) -> str:
