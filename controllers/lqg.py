@@ -209,8 +209,8 @@ CONTROLLER = EquationController(
         "Riccati equations at the operating points and scheduled by polynomials. Written in moves it needs no operating "
         "point, integrates, and, as the filter is told the limited voltage, does not wind up; so its references need no filter. Its "
         "weights follow from the plant file's poles alone: the regulator's have 0.74 of their geometric mean, the filter's 4.5 times it, "
-        "and the error is weighted with its rate over 0.42 of it; these three numbers were chosen on sixty spread plants of seed 101, which "
-        "are not those below. "
+        "and the error is weighted with its rate over 0.42 of it; these numbers were chosen on sixty spread plants of seed 101, which are "
+        "not those below. "
         "It begins with the voltage that holds the arm where it is."
     ),
     equations=lambda table: Lqg(len(table.axes[0].gains.a)),
