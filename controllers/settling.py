@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from design.operating_points import rest
 from design.settings import DesignSettings, read_settings
 from records.errors import BadInput
-from records.law_table import LawTable
+from records.law_table import FlownTable, LawTable
 from records.text.units import said
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
@@ -36,8 +36,8 @@ def demand_settling(bound: BoundPlant, table: LawTable[Any], law: Controller, ex
     """Raise BadInput naming operating point, axis and error where the law does not settle on the plant without added effects."""
     seen = without_effects(bound) if bound.effects else bound
     settings = read_settings(seen)
-    for scheduled_rad in _scheduled_rad(table):
-        error_rad = _last_error(seen, settings, table, law, scheduled_rad)
+    for scheduled_rad in begins_rad(table):
+        error_rad = last_error(seen, settings, table, law, scheduled_rad)
         for axis, loop, error in zip(table.axes, table.loops, error_rad.tolist(), strict=True):
             limit = SETTLED * (axis.reference_max_rad - axis.reference_min_rad)
             if not error <= limit:
@@ -50,14 +50,14 @@ def demand_settling(bound: BoundPlant, table: LawTable[Any], law: Controller, ex
                 raise BadInput("stability", where, flown, f"at most {said(loop.output, limit)}", remedy)
 
 
-def _scheduled_rad(table: LawTable[Any]) -> list[float]:
+def begins_rad(table: FlownTable) -> list[float]:
     """Where flights begin: 0 alone without a schedule."""
     schedule = table.schedule
     return [0.0] if schedule is None else np.linspace(schedule.min_rad, schedule.max_rad, 3).tolist()
 
 
-def _last_error(
-    bound: BoundPlant, settings: DesignSettings, table: LawTable[Any], law: Controller, scheduled_rad: float
+def last_error(
+    bound: BoundPlant, settings: DesignSettings, table: FlownTable, law: Controller, scheduled_rad: float
 ) -> Array:
     """The largest |error| of each loop (loops,) in the quiet part, in its output's unit; infinite where it is no number."""
     point = rest(bound, settings, scheduled_rad)
@@ -71,7 +71,7 @@ def _last_error(
 
 
 def _legs(
-    bound: BoundPlant, table: LawTable[Any], outputs: tuple[int, ...], point: OperatingPoint
+    bound: BoundPlant, table: FlownTable, outputs: tuple[int, ...], point: OperatingPoint
 ) -> tuple[list[tuple[Leg, ...]], float]:
     """Each loop's reference from where it rests by one step towards its middle, and how long the flight takes [s]."""
     legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point.x0)]

@@ -16,13 +16,14 @@ from design.settings import read_settings
 from design.table import design, poles_on
 from design.trade_off import TradePoint, trade_off
 from records.errors import BadInput, VerificationFailed
-from records.law_table import LawTable
+from records.law_table import FlownTable, LawTable
 from records.table import ControllerTable
 from records.verification import PoleMigration
 from sim.bind import BoundPlant
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_bound
+from verification.held import demand_held
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,14 @@ def design_plant(bound: BoundPlant, arithmetic: str = "float32", where: str = ""
     """The same for a plant that is loaded, told as `where`."""
     with stage("designing at the operating points, fitting, judging"), _computable(where or bound.plant.name):
         table, report = design(bound, read_settings(bound), ARITHMETICS[arithmetic].rounding)
+    _fly(bound, table, arithmetic)
     return Designed(bound, table, report)
+
+
+def _fly(bound: BoundPlant, table: FlownTable, arithmetic: str) -> None:
+    """The gate's last question, put to the law that flies."""
+    with stage(f"flying the generated law in {arithmetic} from rest"):
+        demand_held(bound, table, arithmetic)
 
 
 def roll_off_trade(designed: Designed) -> tuple[TradePoint, ...]:
@@ -69,6 +77,7 @@ def design_other_on(bound: BoundPlant, name: str, where: str = "") -> LawTable[A
         table: LawTable[Any] = row.design(bound, read_settings(bound))
         if isinstance(table, LawTable):  # the scheduled law's margins are judged where it is designed
             demand_settling(bound, table, row.float_law(table), row.plants)
+    _fly(bound, table, "float32")
     return table
 
 
