@@ -26,7 +26,7 @@ from codegen.law_frame import LawNumbers, Sample, polynomial
 from controllers.equations.designing import Points, axis_table, largest_output, law_table
 from controllers.equations.equation_controller import EquationController
 from controllers.equations.frame import AxisNumbers, Decisions
-from controllers.equations.judging import demand_margins, demand_stable
+from controllers.equations.judging import demand_held_at_rest, demand_margins, demand_stable
 from controllers.lqg_gains import Speeds, gains_at, wished_speeds
 from controllers.lqg_loop import controller_at, coupled_poles, open_loop
 from design.loop import plant_polynomials
@@ -128,6 +128,8 @@ def design(points: Points) -> LawTable[LqgGains]:
 
     Raises BadInput where even at the last one a loop falls below a margin of [design], or all together are unstable.
     """
+    for loop in points.settings.loops:
+        demand_held_at_rest(points, loop.axis)
     for share in SLOWER:
         speeds = {loop.axis: wished_speeds(points.settings.axis(loop.axis), share) for loop in points.settings.loops}
         gains = _all_gains(points, speeds)

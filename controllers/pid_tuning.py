@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.equations.designing import Points, mean_speed_rad_s
+from controllers.equations.judging import demand_held_at_rest
 from design.discretise import SampledPlant
 from design.loop import plant_polynomials
 from records.errors import BadInput
@@ -68,6 +69,7 @@ class _Loop:
 
 def tune(points: Points, axis: str) -> Tuning:
     """(C.3) for the loop of one axis; raises BadInput where no gains near the starts hold any of the bounds."""
+    demand_held_at_rest(points, axis)
     sign = _sign(points, axis)
     speed_rad_s = mean_speed_rad_s(points.settings.axis(axis))
     loop = _loop(points.sampled(axis), sign, speed_rad_s)
@@ -77,11 +79,15 @@ def tune(points: Points, axis: str) -> Tuning:
             k_p, k_i, k_d = found
             filter_s, reached = _filter_s(loop, k_p, k_d), _sensitivity(loop, k_p, k_i, k_d)
             return Tuning(sign * k_p, sign * k_i, sign * k_d, filter_s, reached, Ms_max)
-    remedy = "narrow the schedule's range of [design], or choose another controller: three gains hold about two states"
+    remedy = f"{_narrower(points)}choose another controller: three gains hold about two states"
     raise BadInput(
         f"PID of the {axis}", f"plant {points.bound.plant.name!r}", "no gains with that robustness at every operating point",
         f"max |1/(1 + L)| <= {SENSITIVITIES[-1]:g}", remedy,
     )  # fmt: skip
+
+
+def _narrower(points: Points) -> str:
+    return "" if points.settings.schedule is None else "narrow the schedule's range of [design], or "
 
 
 def _best(loop: _Loop, speed_rad_s: float, bound: float) -> tuple[float, float, float] | None:
@@ -118,7 +124,7 @@ def _sign(points: Points, axis: str) -> float:
     pushes = [float(np.polyval(plant_polynomials(plant).b[::-1], step)) for plant in points.sampled(axis)]
     if not (min(pushes) > 0.0 or max(pushes) < 0.0):
         got = "an input that pushes its output up at some operating points and down at others"
-        remedy = "narrow the schedule's range of [design], or choose another controller"
+        remedy = f"{_narrower(points)}choose another controller"
         raise BadInput(f"PID of the {axis}", f"plant {points.bound.plant.name!r}", got, "one sign", remedy)
     return math.copysign(1.0, pushes[0])
 

@@ -56,6 +56,25 @@ return Model(
 )
 """,
 )
+SPRING = OwnPlant(
+    {"k": (1.5, 0.1, "s^-1")},
+    {"v_m": 1e-3},
+    """
+x, v, u = symbol("a_1"), symbol("v_m"), symbol("u_V")
+return Model(
+    name="NAME", states=(x, v), inputs=(u,), outputs={"v_m": v}, parameters=PARAMETERS,
+    rates={x: v, v: p["k"] * (u - x - v)}, axes=(), input_limits={u: (-12, 12)},
+    places=Places(inputs={"input": InputPlace(u, "V", 12.0)}, sensors={"gauge": SensorPlace("v_m", "m", 1.0)}),
+)
+""",
+)
+SPRING_WISHES = """
+[design]
+[design.wheel]
+poles_rad_s = [-2, -3, -6, -8]
+reference_min_m = -0.5
+reference_max_m = 0.5
+"""
 CHAIN_WISHES = """
 [design]
 [design.cart]
@@ -139,6 +158,16 @@ def test_a_table_states_its_gains_in_its_loop_s_units_and_reads_back(tmp_path: P
     assert {"k_p_W_K", "y_max_K"} <= set(gains)
     (tmp_path / "controller.json").write_text(text, encoding="utf-8")
     assert loading.load(tmp_path / "controller.json")[1] == table
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_input_that_holds_the_output_nowhere_is_refused_in_words(name: str, tmp_path: Path) -> None:
+    # Truth: v' = k (u - x - v), x' = v comes to rest at v = 0 under any steady u; an integrator would drift behind that zero, unseen.
+    path = SPRING.write(tmp_path, "spring")
+    path.write_text(path.read_text() + SPRING_WISHES)
+    spring = bind(load_plant(path))
+    with pytest.raises(BadInput, match="wheel at rest: loop: got a steady u_V that does not move v_m"):
+        CONTROLLERS[name].design(spring, read_settings(spring))
 
 
 def test_what_three_gains_cannot_hold_is_refused_in_words(tmp_path: Path) -> None:
