@@ -273,13 +273,13 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path, capsys: pytest.
 def test_a_state_that_is_faster_than_a_sample_is_followed_and_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    # Truth: a winding of 0.5 ms, of which a sample of 10 ms is twenty; RK4 needs steps of 1.4 ms at most, so eight and more a sample.
+    # Truth: a winding of 0.5 ms, of which a sample of 10 ms is twenty; RK4 follows it to its rate in steps of a quarter of it, eighty a sample.
     assert main(["new-plant", "quick", "--like", "motor", "--out", str(tmp_path)]) == 0
     text = (tmp_path / "plant.toml").read_text(encoding="utf-8")
     text = text[: text.index("[design]")].replace("value = 0.01\nsd = 0.002", "value = 0.0005\nsd = 0.0001")
     (tmp_path / "plant.toml").write_text(text, encoding="utf-8")
     assert main(["simulate", "--plant", str(tmp_path / "plant.toml"), "--out", str(tmp_path)]) == 0
-    assert "error of 8 integration steps a sample" in capsys.readouterr().out
+    assert "error of 80 integration steps a sample" in capsys.readouterr().out
     omega_rad_s = np.genfromtxt(tmp_path / "simulation.csv", delimiter=",", names=True)["omega_rad_s"]
     assert np.isfinite(omega_rad_s).all()
     assert np.ptp(omega_rad_s) > 10.0
