@@ -273,7 +273,7 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path, capsys: pytest.
 def test_a_state_that_is_faster_than_a_sample_is_followed_and_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    # Truth: a winding of 0.5 ms, of which a sample of 10 ms is twenty; RK4 follows it to its rate in steps of a quarter of it, eighty a sample.
+    # Truth: a winding of 0.5 ms, of which a sample of 10 ms is twenty; RK4 follows it to its rate in quarters of it, eighty a sample.
     assert main(["new-plant", "quick", "--like", "motor", "--out", str(tmp_path)]) == 0
     text = (tmp_path / "plant.toml").read_text(encoding="utf-8")
     text = text[: text.index("[design]")].replace("value = 0.01\nsd = 0.002", "value = 0.0005\nsd = 0.0001")
