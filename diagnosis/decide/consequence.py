@@ -24,7 +24,7 @@ def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
     less evidence than the MOST_FORESEEN most evident are not asked.
     """
     asked = sorted(tried.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
-    fewer = [other for entry in asked if (other := _one_less(entry, tried.named)) is not None]
+    fewer = [other for entry in asked for other in _one_less(entry, tried.named)]
     asked = list(dict.fromkeys([*asked, *fewer, *([] if tried.beyond is None else [tried.beyond])]))
     plain, seconds = tried.nominal.fit.hypothesis, logs.seconds
     gains = thread_map(lambda entry: logs.gain(entry.fit.hypothesis, plain), asked)
@@ -32,38 +32,38 @@ def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
 
 
 def without_idle(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> tuple[Tried, tuple[Decision, ...]]:
-    """What was tried, without hypotheses one of whose effects does less than FORMS_OFF of what they predict better, beside the likeliest
+    """What was tried, without hypotheses one of whose effects does less than FORMS_OFF of what they predict better, beside the same
     without it; and the rules. What parameters beyond their spread cost counts: where these leave it to take an effect's part, it is not
     idle."""
-    told = [
-        (entry, fewer) for entry in tried.named if entry in ahead and (fewer := _one_less(entry, ahead)) is not None
+    told = [(entry, fewer) for entry in tried.named if entry in ahead for fewer in _one_less(entry, ahead)]
+    idle = [
+        (entry, fewer, gain, least)
+        for entry, fewer in told
+        if (gain := ahead[entry] - beyond_spread(entry) - ahead[fewer] + beyond_spread(fewer))
+        < (least := float(decisions.FORMS_OFF) * max(ahead[entry], 0.0))
     ]
-    gains = {entry: ahead[entry] - beyond_spread(entry) - ahead[fewer] + beyond_spread(fewer) for entry, fewer in told}
-    least = {entry: float(decisions.FORMS_OFF) * max(ahead[entry], 0.0) for entry, _ in told}
-    idle = [(entry, fewer) for entry, fewer in told if gains[entry] < least[entry]]
     rules = tuple(
         held_against(
             "each_matters",
             " + ".join(entry.effects),
-            gains[entry],
-            least[entry],
+            gain,
+            least,
             "nats",
             f"{' + '.join(sorted(set(entry.effects) - set(fewer.effects)))} is left out",
         )
-        for entry, fewer in idle
+        for entry, fewer, gain, least in idle
     )
-    gone = {entry for entry, _ in idle}
+    gone = {entry for entry, *_ in idle}
     return replace(tried, named=tuple(entry for entry in tried.named if entry not in gone)), rules
 
 
-def _one_less(entry: FittedHypothesis, asked: Iterable[FittedHypothesis]) -> FittedHypothesis | None:
-    """The likeliest of what was asked with all effects but one of it; None of a single effect."""
-    fewer = [
+def _one_less(entry: FittedHypothesis, asked: Iterable[FittedHypothesis]) -> list[FittedHypothesis]:
+    """What was asked with all effects but one of it; nothing of a single effect."""
+    return [
         other
         for other in asked
         if len(other.effects) == len(entry.effects) - 1 > 0 and set(other.effects) < set(entry.effects)
     ]
-    return max(fewer, key=lambda other: other.evidence, default=None)
 
 
 def foreseen_rules(foretold: Mapping[FittedHypothesis, float], weighed: Weighed) -> tuple[Decision, ...]:

@@ -19,38 +19,44 @@ def behind_play(filter_input: FilterInput, output: int, width: float, step: floa
     """The filter input where an output's readings, counts of `step` and of the variance `stated` by themselves, follow it behind play of
     that width.
 
-    While the axis crosses the play its reading stands: all readings of such a stretch are off by one error.
+    While the axis crosses the play its reading stands: all readings of such a stretch are off by one error, and what they scatter is noise.
     """
-    y = filter_input.y.copy()
+    y, single = filter_input.y.copy(), float(filter_input.single[output])
     seen = np.flatnonzero(np.isfinite(y[:, output]))
-    read, noise = filter_input.read[seen, output], max(float(filter_input.single[output]) - stated, 0.0)
+    read = filter_input.read[seen, output]
     # What noise does back and forth, a count and the range of n readings, 2 sqrt(2 ln n) standard deviations, is no motion: play that is no
     # wider shows in nothing.
-    reach = step + 2.0 * float(np.sqrt(2.0 * noise * np.log(max(len(read), 1))))
+    reach = step + 2.0 * float(np.sqrt(2.0 * max(single - stated, 0.0) * np.log(max(len(read), 1))))
     if width <= reach:
         return filter_input
     way = pushing(read, reach)
     y[seen, output] += 0.5 * width * way
-    unsure = way == 0.0
-    number = np.cumsum(np.append(0, np.diff(unsure.astype(int)) != 0)[: len(unsure)])  # of the stretch
-    rows = np.bincount(number, minlength=1)[number]
-    alike = np.maximum(rows[unsure], filter_input.standing[seen[unsure], output])
+    unsure, crossing = way == 0.0, _numbered(np.append(np.zeros(min(len(way), 1)), np.diff(way)) != 0.0)
+    alike = np.maximum(
+        np.bincount(crossing, minlength=1)[crossing][unsure], filter_input.standing[seen[unsure], output]
+    )
     each_nats = min(BELL, charge(filter_input, output, width))
     found = less_sure(replace(filter_input, y=y), output, seen[unsure], alike, width, each_nats)
-    if noise == 0.0 or not unsure.any():
-        return found
     before, behind = (given.r[seen[unsure], output] for given in (filter_input, found))
-    scatter = max(_scatter(read[unsure], number[unsure]), stated)
-    # These readings scattered as noise, of a variance that they show themselves: less sure, none of it costs the filter anything.
-    scattered = 0.5 * float(np.sum((1.0 - before / behind) * (1.0 + np.log(scatter / before))))
+    stretch = _numbered((_moves(read, reach) != 0.0)[unsure]) + crossing[unsure] * len(
+        read
+    )  # what moves within is no noise
+    scattered = float((1.0 - before / behind) @ _noise_nats(read[unsure], stretch, step, single))
     return replace(found, known=found.known - scattered)
 
 
-def _scatter(read: Array, stretch: NDArray[np.int64]) -> float:
-    """The variance of readings (n,) about the mean of their stretch."""
-    counts = np.bincount(stretch)
-    away = read - (np.bincount(stretch, read) / np.maximum(counts, 1))[stretch]
-    return float(away @ away) / max(len(read) - int(np.count_nonzero(counts)), 1)
+def _numbered(begins: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The number of the stretch to which each row belongs, by the rows that begin one."""
+    return np.asarray(np.cumsum(begins), np.int64)
+
+
+def _noise_nats(read: Array, stretch: NDArray[np.int64], step: float, single: float) -> Array:
+    """What readings (n,) cost as noise about the mean of their stretch, of the variance that they show or, where that is larger, of a
+    `single` one: less sure, none of it costs the filter anything. Of a stretch beside an edge either count may be read: half a step off."""
+    _, stretch, counts = np.unique(stretch, return_inverse=True, return_counts=True)
+    away = read - (np.bincount(stretch, read, minlength=len(counts)) / counts)[stretch]
+    variance = max(float(away @ away) / max(len(read) - len(counts), 1), single)
+    return 0.5 * (away**2 / max(variance, 0.25 * step**2) + float(np.log(variance / single)))
 
 
 def pushing(read: Array, noise: float) -> Array:
