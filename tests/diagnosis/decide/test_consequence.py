@@ -143,6 +143,19 @@ def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_id
         assert without_idle(tried, {both: 40.0, bent: 40.0 + nats})[0].named == kept
 
 
+def test_an_effect_must_do_its_part_beside_any_that_it_stands_with() -> None:
+    # Truth by hand: the force alone predicts as well as both, whichever of the two is likelier by itself: friction is idle.
+    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
+    case = arm_case(arm_log(pull, seed=76))
+    both, rubbing, pulled, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, pull, {}))
+    rubbing, pulled = replace(rubbing, evidence=60.0), replace(pulled, evidence=50.0)
+    tried = Tried((both, rubbing, pulled), plain, case.library, 5.0)
+    found, (rule,) = without_idle(tried, {both: 40.0, rubbing: 5.0, pulled: 39.0})
+    assert found.named == (rubbing, pulled)
+    assert rule.outcome == "arm.coulomb is left out"
+    assert without_idle(tried, {both: 40.0, rubbing: 5.0, pulled: 30.0})[0].named == (both, rubbing, pulled)
+
+
 @pytest.mark.parametrize("moved", [False, True])
 def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_file(moved: bool) -> None:
     # Truth: a reading late by 1 ms, which no prediction shows. A plant that follows its logs as stated lacks nothing that matters.
