@@ -29,25 +29,20 @@ def behind_play(filter_input: FilterInput, output: int, width: float, step: floa
     reach = step + 2.0 * float(np.sqrt(2.0 * max(single - stated, 0.0) * np.log(max(len(read), 1))))
     if width <= reach:
         return filter_input
-    way = pushing(read, reach)
+    way, moved = pushing(read, reach), _moves(read, reach) != 0.0
     y[seen, output] += 0.5 * width * way
-    unsure, crossing = way == 0.0, _numbered(np.append(np.zeros(min(len(way), 1)), np.diff(way)) != 0.0)
-    alike = np.maximum(
-        np.bincount(crossing, minlength=1)[crossing][unsure], filter_input.standing[seen[unsure], output]
-    )
+    unsure, begins = way == 0.0, np.append(np.zeros(min(len(way), 1)), np.diff(way)) != 0.0
+    crossing, stretch = (
+        np.cumsum(begins),
+        np.cumsum(begins | moved),
+    )  # what moves the reading within a crossing is no noise
+    rows = np.bincount(crossing, minlength=1)[crossing]
+    alike = np.maximum(rows[unsure], filter_input.standing[seen[unsure], output])
     each_nats = min(BELL, charge(filter_input, output, width))
     found = less_sure(replace(filter_input, y=y), output, seen[unsure], alike, width, each_nats)
     before, behind = (given.r[seen[unsure], output] for given in (filter_input, found))
-    stretch = _numbered((_moves(read, reach) != 0.0)[unsure]) + crossing[unsure] * len(
-        read
-    )  # what moves within is no noise
-    scattered = float((1.0 - before / behind) @ _noise_nats(read[unsure], stretch, step, single))
+    scattered = float((1.0 - before / behind) @ _noise_nats(read[unsure], stretch[unsure], step, single))
     return replace(found, known=found.known - scattered)
-
-
-def _numbered(begins: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The number of the stretch to which each row belongs, by the rows that begin one."""
-    return np.asarray(np.cumsum(begins), np.int64)
 
 
 def _noise_nats(read: Array, stretch: NDArray[np.int64], step: float, single: float) -> Array:
