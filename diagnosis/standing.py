@@ -41,7 +41,7 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
     small, ahead_nats = seen.detection.largest <= decisions.PLAIN_TO_SEE, judged.weighed.ahead_nats
     if seen.detection.moved or (ahead_nats is None and not small):
         return seen, True
-    least = float(decisions.MATTERS) * FittedLogs(seen.case).seconds
+    least = float(decisions.MATTERS) * FittedLogs(seen.case).readings
     least = max(least, -float(np.log(decisions.ALARM))) if small else least
     matters = ahead_nats is not None and ahead_nats >= least
     outcome = "matters" if matters else "no gap: too small to matter"

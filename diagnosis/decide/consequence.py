@@ -26,9 +26,9 @@ def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
     asked = sorted(tried.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
     fewer = [other for entry in asked for other in _one_less(entry, tried.named)]
     asked = list(dict.fromkeys([*asked, *fewer, *([] if tried.beyond is None else [tried.beyond])]))
-    plain, seconds = tried.nominal.fit.hypothesis, logs.seconds
+    plain, readings = tried.nominal.fit.hypothesis, logs.readings
     gains = thread_map(lambda entry: logs.gain(entry.fit.hypothesis, plain), asked)
-    return {entry: seconds * gain for entry, gain in zip(asked, gains, strict=True)}
+    return {entry: readings * gain for entry, gain in zip(asked, gains, strict=True)}
 
 
 def without_idle(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> tuple[Tried, tuple[Decision, ...]]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy
 from diagnosis.validate.prediction import predictions, windows
@@ -29,9 +30,10 @@ class FittedLogs:
         return self.gains[one, other]
 
     @property
-    def seconds(self) -> int:
-        """How many windows of a second the logs have."""
-        return sum(len(windows(flight.log.t_s)) for flight in self.case.flights)
+    def readings(self) -> int:
+        """How many readings of the logs share no error: one in each window of a second; LEAST_APART in short logs, which are those of plants
+        whose errors pass sooner."""
+        return max(sum(len(windows(flight.log.t_s)) for flight in self.case.flights), decisions.LEAST_APART)
 
     def errors(self, hypothesis: Hypothesis) -> Errors:
         """The errors of its predictions."""

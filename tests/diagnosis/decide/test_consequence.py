@@ -58,7 +58,7 @@ def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not
         found = explained(case, plain, effect, values)
         weighed = weighed_of(case, plain, found)
         assert weighed.ahead_nats is not None
-        assert (weighed.ahead_nats > 0.3 * FittedLogs(case).seconds) is matters
+        assert (weighed.ahead_nats > 0.3 * FittedLogs(case).readings) is matters
         result = replace(judged(found, None), weighed=weighed)
         after, stands = of_consequence(seen(case, plain), result)
         assert stands is matters
@@ -96,9 +96,9 @@ def test_what_is_there_predicts_the_logs_better_and_what_is_idle_does_not() -> N
     both, alone, other, plain = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle, {}))
     logs = FittedLogs(case)
     found = foreseen(logs, Tried((both, alone, other), plain, case.library, 5.0))
-    assert found[alone] > 0.3 * logs.seconds
+    assert found[alone] > 0.3 * logs.readings
     assert found[other] < 0.1 * found[alone]
-    assert abs(found[both] - found[alone]) < decisions.MATTERS * logs.seconds
+    assert abs(found[both] - found[alone]) < decisions.MATTERS * logs.readings
 
 
 def test_a_second_effect_predicts_what_the_first_leaves() -> None:
@@ -107,7 +107,7 @@ def test_a_second_effect_predicts_what_the_first_leaves() -> None:
     case = arm_case(arm_log({**rub, **pull}, seed=76))
     both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
     found = foreseen(logs := FittedLogs(case), Tried((alone, both), plain, case.library, 5.0))
-    assert found[both] - found[alone] > decisions.MATTERS * logs.seconds
+    assert found[both] - found[alone] > decisions.MATTERS * logs.readings
     weighed = Weighed((both, alone), (0.6, 0.01), 0.39, 0.0, 1.0)
     (rule,) = foreseen_rules(found, weighed)  # what is unlikely is not told
     assert (rule.of, rule.value) == ("arm.coulomb + arm.offset_force", pytest.approx(found[both]))
