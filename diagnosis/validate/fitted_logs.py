@@ -31,7 +31,7 @@ class FittedLogs:
 
     @property
     def readings(self) -> int:
-        """How many readings of the logs share no error: one in each window of a second; LEAST_APART in short logs, which are those of plants
+        """How many readings of the logs share no error: one in each window of a second; LEAST_APART in short logs: of plants
         whose errors pass sooner."""
         return max(sum(len(windows(flight.log.t_s)) for flight in self.case.flights), decisions.LEAST_APART)
 
