@@ -36,10 +36,12 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
     """Whether what explains a gap predicts the logs better than the plain plant with its parameters moved: by what matters, and a small gap
     by more than chance, as a gain of x nats has a chance of exp(-x) at most; or surely those that were not fitted.
 
-    A plant that had to move its parameters further than its file allows is none that is as stated, however well it then predicts.
+    A plant that had to move a parameter beyond its spread is none that is as stated, however well it then predicts.
     """
     small, ahead_nats = seen.detection.largest <= decisions.PLAIN_TO_SEE, judged.weighed.ahead_nats
-    if seen.detection.moved or (ahead_nats is None and not small):
+    furthest = float(np.max(np.abs(seen.retuned.fit.hypothesis.theta), initial=0.0))
+    beyond = seen.detection.moved and furthest > decisions.FREE_SPREAD
+    if beyond or (ahead_nats is None and not small):
         return seen, True
     least = float(decisions.MATTERS) * FittedLogs(seen.case).readings
     least = max(least, -float(np.log(decisions.ALARM))) if small else least

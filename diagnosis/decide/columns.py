@@ -29,7 +29,7 @@ def is_strained(case: Case, fit: Fit) -> bool:
     return bool(
         np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.ANOTHER_PLANT
         or np.max(hypothesis.process_noise, initial=-np.inf) > decisions.FIRST_PROCESS_NOISE
-        or max(gust_shares(case, hypothesis).values(), default=0.0) >= decisions.DRAUGHT
+        or max(gust_shares(case, hypothesis).values(), default=0.0) >= decisions.USUAL_GUST
     )
 
 

@@ -36,8 +36,8 @@ def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tupl
     if not shares:
         return None, ()
     name = max(shares, key=lambda name: shares[name])
-    told = shares[name] >= decisions.DRAUGHT
-    rule = decided("draught", name, shares[name], decisions.DRAUGHT, "a gust" if told else "usual noise")
+    told = shares[name] >= decisions.USUAL_GUST
+    rule = decided("draught", name, shares[name], decisions.USUAL_GUST, "a gust" if told else "usual noise")
     quiet = without_gusts(case, retuned, [name]) if told else None
     if quiet is None:
         return None, (rule,)

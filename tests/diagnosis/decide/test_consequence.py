@@ -156,12 +156,18 @@ def test_an_effect_must_do_its_part_beside_any_that_it_stands_with() -> None:
     assert without_idle(tried, {both: 40.0, rubbing: 5.0, pulled: 30.0})[0].named == (both, rubbing, pulled)
 
 
-@pytest.mark.parametrize("moved", [False, True])
-def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_file(moved: bool) -> None:
-    # Truth: a reading late by 1 ms, which no prediction shows. A plant that follows its logs as stated lacks nothing that matters.
+@pytest.mark.parametrize(
+    ("moved", "furthest_sd", "stands"), [(False, 4.0, False), (True, 2.0, False), (True, 4.0, True)]
+)
+def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_file(
+    moved: bool, furthest_sd: float, stands: bool
+) -> None:
+    # Truth: a reading late by 1 ms, which no prediction shows. A plant that follows its logs within its spread lacks nothing that matters.
     values = {"tau": 1e-3, "jitter": 0.0}
     case = arm_case(arm_log({"theta_sensor.delay": values}, seed=76))
     plain = as_fitted(case, nominal_fit(case))
     late = explained(case, plain, "theta_sensor.delay", values)
     result = replace(judged(late, None), weighed=weighed_of(case, plain, late))
-    assert of_consequence(seen(case, plain, moved=moved), result)[1] is moved
+    theta = np.full_like(plain.fit.hypothesis.theta, furthest_sd)
+    bent = replace(plain, fit=replace(plain.fit, hypothesis=replace(plain.fit.hypothesis, theta=theta)))
+    assert of_consequence(seen(case, bent, moved=moved), result)[1] is stands
