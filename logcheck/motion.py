@@ -82,12 +82,15 @@ def _moves(values: Array) -> tuple[Array, float]:
 
 
 def _is_a_staircase(values: Array, step: float) -> bool:
-    """Whether a column stands in most rows, and leaps by much of its range where it does not; a step of its sensor is no leap."""
+    """Whether a column stands in most rows, and leaps by much of its range where it does not; a step of its sensor is no leap, nor one of
+    a coarser grid, whose points an axis passes one after the other."""
     moves, whole = _moves(values)
     leaps = moves[moves > 0.0]
     stands = leaps.size <= (1.0 - thresholds.STANDS_SHARE) * moves.size
     far = max(thresholds.LEAPS_SHARE * whole, thresholds.LEAST_SEAM_STEPS * step)
-    return bool(stands and leaps.size >= thresholds.LEAST_LEAPS and np.median(leaps) > far)
+    if not stands or leaps.size < thresholds.LEAST_LEAPS or np.median(leaps) <= far:
+        return False
+    return bool(leaps.max() > leaps.min() + 2.0 * step or whole < 2.0 * leaps.min())
 
 
 def _moves_on(values: Array) -> bool:

@@ -89,3 +89,11 @@ def test_an_angle_that_is_kept_within_a_turn_or_a_counter_is_refused_with_what_c
     with pytest.raises(BadInput, match=f"theta_rad leaps by {told} .*`twinlaw import` counts it on"):
         demand(examine([replace(log, y=kept)], fine, names=["log"]))
     assert "wrapped" not in [found.kind for found in examine([replace(log, y=whole)], fine, names=["log"]).findings]
+
+
+def test_a_sensor_of_a_coarse_grid_beside_a_smooth_input_is_no_exchange(arm: BoundPlant, log: RunLog) -> None:
+    # Truth: an axis that swings through five steps of 0.06 rad under an input that is smooth.
+    t_s = log.t_s
+    angle = 0.16 * np.sin(0.6 * t_s)[:, None]
+    coarse = replace(log, u=2.0 + np.sin(1.7 * t_s)[:, None], y=0.06 * np.round(angle / 0.06))
+    demand(examine([coarse], arm, names=["log"]))
