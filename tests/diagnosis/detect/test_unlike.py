@@ -28,5 +28,7 @@ def test_a_second_cause_is_tried_before_what_looks_like_the_first(plain: Lineari
     # Truth by hand: two laws of friction that are one at the speeds flown promise 30 and 29 nats, a late sensor 12.
     rubs, falls = promising("arm.coulomb", RUBS["arm.coulomb"], 30.0), promising("arm.stribeck", FALLS, 29.0)
     late = promising("theta_sensor.delay", LATE, 12.0)
-    assert unlike(plain, [rubs, falls, late], 2) == [rubs, late]
+    other = promising("theta_sensor.lag", {"tau": 0.02}, 11.0)
+    assert unlike(plain, [rubs, falls, late], 1) == [rubs, late]
+    assert unlike(plain, [rubs, falls, late, other], 2) == [rubs, falls, late]
     assert unlike(plain, [rubs, falls], 2) == [rubs, falls]
