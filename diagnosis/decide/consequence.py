@@ -17,8 +17,8 @@ TOLD_FROM = 0.02  # probability: of less probable ones no rule is told
 
 def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
     """Nats by which the likeliest of what was tried, the same with one effect less, and parameters beyond their spread predict the logs
-    better than the plant alone, over horizons from a row to a second (validate/score.py): a reading for each second, as those within share
-    their errors.
+    better than the plant alone, over horizons from a row to a second (validate/score.py), in nats of all readings that share no error
+    (`FittedLogs.readings`).
 
     What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off. Those with
     less evidence than the MOST_FORESEEN most evident are not asked.

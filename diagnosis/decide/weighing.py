@@ -103,11 +103,11 @@ def weigh(
         _rules(told, first, scale, explained),
         partly,
         told,
-        _foretold(told, shares),
+        _ahead_nats(told, shares),
     )
 
 
-def _foretold(told: ModelComparison, shares: Array) -> float | None:
+def _ahead_nats(told: ModelComparison, shares: Array) -> float | None:
     """What explains predicts better, in the mean by its shares; None where nothing explains."""
     ahead = [*(one.ahead_nats for one in told.candidates), told.parameters_ahead_nats]
     return float(np.dot(shares, ahead)) if shares.any() else None

@@ -8,7 +8,7 @@ from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.foretold import foretold_nats
-from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, noise_on, passes
@@ -89,8 +89,13 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
 
 def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> FittedHypothesis:
     """The hypothesis fitted under the noise of another as it is, or itself where that is no likelier."""
-    found = fit(case, as_noisy(case, fitted.fit.hypothesis, known.fit.hypothesis), rounds=NOISY_ROUNDS)
+    found = _fit_under(case, fitted, known, NOISY_ROUNDS)
     return max((fitted, *([] if found is None else [as_fitted(case, found)])), key=lambda entry: entry.evidence)
+
+
+def _fit_under(case: Case, fitted: FittedHypothesis, known: FittedHypothesis, rounds: int) -> Fit | None:
+    """The fit after so many rounds under the noise of another; None where the filter fails."""
+    return fit(case, as_noisy(case, fitted.fit.hypothesis, known.fit.hypothesis), rounds=rounds)
 
 
 def _noisy_of_a_size(
@@ -154,7 +159,7 @@ def _in_reach(
 
 def _further(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> float:
     """What a hypothesis gains under the noise of another, to first order in all numbers, as they come back which bent for want of it."""
-    found = fit(case, as_noisy(case, fitted.fit.hypothesis, known.fit.hypothesis), rounds=0)
+    found = _fit_under(case, fitted, known, 0)
     return 0.0 if found is None else found.log_posterior + found.promised - fitted.fit.log_posterior
 
 
