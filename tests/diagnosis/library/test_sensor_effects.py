@@ -200,6 +200,17 @@ def test_noise_that_moves_counts_back_and_forth_is_no_reversal_behind_play(noise
     assert np.mean(np.abs(off) > 0.25 * width) < 0.01
 
 
+def test_play_charges_nothing_for_readings_that_stand_but_once_a_stretch() -> None:
+    # What an interval costs as a bell of the same variance, ln sqrt(12 / 2 pi) = 0.32, for each stretch in which the axis may be anywhere:
+    # the first reading, the top, the last one. Of an axis that moves three counts a row none lies beside an edge.
+    up, still = 3.0 * STEP * np.arange(50), np.full(30, 147.0 * STEP)
+    plain = readings(np.concatenate([up, still, up[::-1][1:]]))
+    behind = behind_play(plain, 0, 20.0 * STEP, STEP, STEP**2 / 12)
+    widened = plain.r[:, 0] < 0.99 * behind.r[:, 0]
+    own = 0.5 * np.log(behind.r[widened, 0] / plain.r[widened, 0]).sum()
+    assert behind.known - plain.known - own == pytest.approx(-0.32 * 3, abs=0.02)
+
+
 def test_play_charges_for_standing_once_a_stretch() -> None:
     # What an interval costs as a bell of the same variance, ln sqrt(12 / 2 pi) = 0.32, for each stretch in which the axis may be anywhere:
     # the first readings, the top. A reading that is a count off its stretch costs 2 nats, half a step off an edge; each holds one at most.
