@@ -93,7 +93,7 @@ TAKEN_IN = Limit(
     "rows, a name than torques that come and go, an axis that creeps than one that sticks; friction a little other than the model's may "
     "gain as much, nothing may where it has none: chance gains 5 by the best of fifty",
     "development cases of the sealed generator, seeds 21 and 22; dry friction of 0.3 mN m under a torque that comes and goes gained 21, a "
-    "weight shift of the third rig 85, a rig without effects -41",
+    "weight shift of the third rig 85, a rig without effects -41; axes that creep, of ten spent cases of all rigs, 28 to 800",
 )
 SURE_ROUGHNESS = Limit(
     5.0,
@@ -241,12 +241,6 @@ ASTRAY = Limit(
     "mean square standard deviations",
     "a fit whose parameters went further begins once more from the plant as stated: right ones go 1",
     DEVELOPMENT,
-)
-YIELDING_GAIN = Limit(
-    80.0,
-    "nats",
-    "and all together: rigs that creep gained 110 to 765, flights whose friction is a bed of stiff bristles 63 at most",
-    "seventeen cases of the second rig and of seed 900011",
 )
 ASKED = Count(
     4,

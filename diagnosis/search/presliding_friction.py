@@ -15,6 +15,7 @@ from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.search.fitting import at_its_place, refined
 from records.reasons import Decision
 from sim.effect import Effect, Values
 
@@ -37,11 +38,11 @@ class Yielding:
 def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0) -> Yielding:
     """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best first.
 
-    They must then be YIELDING_GAIN and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
+    They must then be TAKEN_IN and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
     something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
     for it.
     """
-    needed_nats = decisions.YIELDING_GAIN + further
+    needed_nats = decisions.TAKEN_IN + further
     best, likeliest_fit, rules = found[0].evidence + needed_nats, None, list[Decision]()
     promised = [(_promised(case, fitted.fit), fitted) for fitted in found]
     promising = sorted(
@@ -53,10 +54,12 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
     for _, place in promising[: -decisions.NEXT - 1 : -1]:
         fitted = found[place]
         hypothesis = _yielded(case, fitted.fit)
-        ended = None if hypothesis is None else fit(case, hypothesis, rounds=4)
-        if ended is None:
+        begun = None if hypothesis is None else at_its_place(case, hypothesis)
+        # With the noise that then remains, as what it is held against has its own.
+        refitted = None if begun is None else refined(case, begun)
+        if refitted is None:
             continue
-        explained = evidence(ended, case.library.effects)
+        ended, explained = refitted.fit, refitted.evidence
         rules.append(_rule(fitted, explained - found[0].evidence, needed_nats))
         if explained > best:
             best, likeliest_fit = explained, ended
@@ -81,7 +84,7 @@ def needed(case: Case, best: FittedHypothesis) -> bool:
         name: v for name, v in best.fit.hypothesis.effects.items() if name in best.effects or not case.added([name])
     }
     found = fit(case, with_process_noise(case, best.fit.hypothesis.with_effects(kept)), rounds=4)
-    return found is None or best.evidence > evidence(found, case.library.effects) + decisions.YIELDING_GAIN
+    return found is None or best.evidence > evidence(found, case.library.effects) + decisions.TAKEN_IN
 
 
 def _promised(case: Case, found: Fit) -> float:
