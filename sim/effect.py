@@ -36,6 +36,8 @@ class Role(Enum):
     STEP = (
         "the step of a grid: on a sensor read off the readings, on an input found from the answers to rounding errors"
     )
+    HOLD = "by how much of a step it is held beyond its half: tried with each step"
+    SHIFT = "where the steps lie, as a share of one: tried with each step"
     JUMP = "a jump of a reading by counts: less than a count is none"
     LEVEL = "an input's largest size: nothing happens below it, so it is tried at shares of the largest command"
     SLOPE = "an input's largest rate: nothing happens below it"

@@ -25,62 +25,73 @@ ASKED = 40  # by what they say for the size of their errors; of these what they 
 
 @dataclass(frozen=True, eq=False)
 class _Rounded:
-    """An input on its way: its column, the state that it drives, and the shares of a step by which each is held beyond its half."""
+    """An input on its way: its column, the state that it drives, and what steps may be like."""
 
     column: int
     target: int
-    holds: Sequence[float]
+    kinds: Sequence["Kind"]
 
 
-def likely_steps(linearisation: Linearisation, place: str, holds: Sequence[float] = (0.0,)) -> list[float]:
-    """The steps q of an input whose errors explain most, to first order, each held by one of the shares `holds` of it beyond its half; a
-    rough step hits only near the true one."""
+@dataclass(frozen=True)
+class Kind:
+    """What steps are like, in shares of one: by how much each is held beyond its half, and where they lie."""
+
+    hold: float = 0.0
+    shift: float = 0.0
+
+
+def likely_steps(
+    linearisation: Linearisation, place: str, kinds: Sequence[Kind] = (Kind(),)
+) -> list[tuple[float, Kind]]:
+    """The steps q of an input, each with what it is like, whose errors explain most, to first order; a rough step hits only near the true
+    one."""
     model = linearisation.case.library.bound.model
     entry = model.places.inputs[place]
     target = _target(linearisation, entry.variable)
     if target is None:
         return []
-    way = _Rounded(model.inputs.index(entry.variable), target, holds)
+    way = _Rounded(model.inputs.index(entry.variable), target, kinds)
     steps = np.geomspace(SMALLEST, LARGEST, COUNT) * entry.size
     steps = steps[np.argsort(-_promises(linearisation, way, steps))[:ASKED]]
-    gains = np.max([_gains(linearisation, way, steps, hold) for hold in holds], axis=0)
-    found: list[float] = []
-    for index in np.argsort(-gains).tolist():
+    by_kind = np.array([_gains(linearisation, way, steps, kind) for kind in kinds])
+    found: list[tuple[float, Kind]] = []
+    for index in np.argsort(-by_kind.max(axis=0)).tolist():
         step = float(steps[index])
-        if all(max(step, other) > STEPS_APART * min(step, other) for other in found):
-            found.append(step)
+        if all(max(step, other) > STEPS_APART * min(step, other) for other, _ in found):
+            found.append((step, kinds[int(np.argmax(by_kind[:, index]))]))
         if len(found) == decisions.NEXT:
             break
     return found
 
 
 def _promises(linearisation: Linearisation, way: _Rounded, steps: Array) -> Array:
-    """The squared score (k,) of each step's errors over their sum of squares, the best of all `holds`: what they gain but for how much of
+    """The squared score (k,) of each step's errors over their sum of squares, the best of all kinds: what they gain but for how much of
     them shows, which is much alike for errors that are as good as random."""
     pulls = linearisation.pulls(way.target)
     parts = np.split(steps, len(steps) // AT_ONCE)
 
-    def over(part: Array, hold: float) -> Array:
+    def over(part: Array, kind: Kind) -> Array:
         score, squares = np.zeros(len(part)), np.zeros(len(part))
         for filter_input, pull in zip(linearisation.filter_inputs, pulls, strict=True):
-            pushed = _errors(filter_input, way.column, part, hold)(slice(None))
+            pushed = _errors(filter_input, way.column, part, kind)(slice(None))
             score, squares = score - pull @ pushed, squares + np.einsum("ij,ij->j", pushed, pushed)
         return np.asarray(np.maximum(score, 0.0) ** 2 / np.maximum(squares, 1e-300))
 
-    by_hold = [np.concatenate(thread_map(partial(over, hold=hold), parts)) for hold in way.holds]
-    return np.asarray(np.max(by_hold, axis=0))
+    by_kind = [np.concatenate(thread_map(partial(over, kind=kind), parts)) for kind in way.kinds]
+    return np.asarray(np.max(by_kind, axis=0))
 
 
-def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, hold: float) -> Array:
-    errors = [_errors(filter_input, way.column, steps, hold) for filter_input in linearisation.filter_inputs]
+def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, kind: Kind) -> Array:
+    errors = [_errors(filter_input, way.column, steps, kind) for filter_input in linearisation.filter_inputs]
     return linearisation.gains_by(errors, way.target)
 
 
-def _errors(filter_input: FilterInput, column: int, steps: Array, hold: float) -> Disturbances:
+def _errors(filter_input: FilterInput, column: int, steps: Array, kind: Kind) -> Disturbances:
     """Errors of an input by steps, over each of a filter input's own (instants, steps): those that the rig has move the innovations as
     its answer says; what the model would add moves them the other way."""
     u, h = filter_input.u[:, column, None], np.append(np.diff(filter_input.t_s), 0.0)[:, None]
-    reached = in_held_steps_of_each(u[:, 0], steps, hold)
+    shift = kind.shift * steps
+    reached = in_held_steps_of_each(u + shift, steps, kind.hold) - shift
 
     def disturbance(part: slice) -> Array:
         errors: Array = u[part] - reached[part]

@@ -1,6 +1,6 @@
 """Score tests of all effects: how much of what is left a signature explains once the plant's own coefficients have had their share."""
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import chain, product
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.detect.input_steps import likely_steps
+from diagnosis.detect.input_steps import Kind, likely_steps
 from diagnosis.detect.instants import instants
 from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.waves import wave_starts
@@ -171,25 +171,26 @@ def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str])
 def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
     """Effects on the way of the signals, and limits: tried at each of their starts at full size."""
     effects = [case.library.effects[name] for name in names]
-    sizes = thread_map(lambda effect: _sizes(case, linearisation, effect), effects)
-    starts = [
-        (effect, {**shapes, effect.size.symbol: value})
-        for effect, values in zip(effects, sizes, strict=True)
-        for value in values
-        for shapes in shape_starts(effect)
-    ]
+    begun = thread_map(lambda effect: _whole_starts(case, linearisation, effect), effects)
+    starts = [(effect, values) for effect, found in zip(effects, begun, strict=True) for values in found]
     return [
         entry for entry in thread_map(lambda start: _tried(case, linearisation, *start), starts) if entry is not None
     ]
 
 
-def _sizes(case: Case, linearisation: Linearisation, effect: Effect) -> list[float]:
-    """Sizes to try of an effect without first order; those of a level and of steps are seen in the log."""
-    seen = SEEN_SIZES.get(effect.size.role)
-    return list(effect.size.starts) or [effect.size.reference] if seen is None else seen(case, linearisation, effect)
+def _whole_starts(case: Case, linearisation: Linearisation, effect: Effect) -> list[Values]:
+    """Values to try of an effect without first order; sizes of a level, and steps with what they are like, are seen in the log."""
+    if effect.size.role is Role.STEP:
+        return _steps(case, linearisation, effect)
+    levels = _levels(case, effect) if effect.size.role is Role.LEVEL else list(effect.size.starts)
+    return [
+        {**shapes, effect.size.symbol: value}
+        for value in levels or [effect.size.reference]
+        for shapes in shape_starts(effect)
+    ]
 
 
-def _levels(case: Case, _: Linearisation, effect: Effect) -> list[float]:
+def _levels(case: Case, effect: Effect) -> list[float]:
     """What an input's command stays below for shares of the time, and a little more than its largest."""
     model = case.library.bound.model
     column = model.inputs.index(model.places.inputs[effect.place].variable)
@@ -198,23 +199,26 @@ def _levels(case: Case, _: Linearisation, effect: Effect) -> list[float]:
     return [float(level) for level in dict.fromkeys(levels) if level > 0.0]
 
 
-def _steps(case: Case, linearisation: Linearisation, effect: Effect) -> list[float]:
+def _steps(case: Case, linearisation: Linearisation, effect: Effect) -> list[Values]:
     """The steps of a sensor, read off its readings, or those of an input, seen in the motion."""
     library = case.library
     sensor = library.bound.model.places.sensors.get(effect.place)
     if sensor is None:
-        holds = [hold for p in effect.parameters if p.rough and not p.is_size for hold in p.starts]
-        return likely_steps(linearisation, effect.place, holds or (0.0,))
+        return _input_steps(linearisation, effect)
     place = library.outputs.index(sensor.output)
     read = np.concatenate([flight.filter_input.read[:, place] for flight in case.flights])
     step = coarse_step(read, library.bound.plant.sensors[sensor.output])
-    return [] if step is None else [step]
+    return [] if step is None else [{effect.size.symbol: step}]
 
 
-SEEN_SIZES: Mapping[Role, Callable[[Case, Linearisation, Effect], list[float]]] = {
-    Role.LEVEL: _levels,
-    Role.STEP: _steps,
-}
+def _input_steps(linearisation: Linearisation, effect: Effect) -> list[Values]:
+    """The likeliest steps of an input, each with how it is held and where it lies."""
+    hold, shift = effect.symbol(Role.HOLD), effect.symbol(Role.SHIFT)
+    kinds = [Kind(shapes[hold], shapes[shift]) for shapes in shape_starts(effect)]
+    return [
+        {effect.size.symbol: step, hold: kind.hold, shift: kind.shift}
+        for step, kind in likely_steps(linearisation, effect.place, kinds)
+    ]
 
 
 def _tried(case: Case, linearisation: Linearisation, effect: Effect, values: Values) -> ScoreTest | None:

@@ -16,7 +16,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise
-from sim.effect import Role
+from sim.effect import EffectParameter, Role
 
 Array = NDArray[np.float64]
 TRIED = 13  # values at a time
@@ -28,6 +28,7 @@ STEP_FINELY = (
     4e-5,
 )  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
 REFINED_ROUNDS = 5  # from where a first fit ended: its own rule stops earlier where little is gained
+MOST_TURNS = 5  # of what is rough and all else: an input's steps behind a delay of 25 ms took three
 VANISHED = 0.02  # of where a shape's search begins: so near none its slopes vanish
 LEVELS = np.geomspace(
     0.5, 2.0, 7
@@ -77,16 +78,28 @@ def at_its_place(case: Case, begun: Hypothesis) -> FittedHypothesis | None:
 
 
 def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
-    """The fit with the process noise that then remains."""
-    start = with_jitter(case, coloured_noise_of(case, fitted.fit.hypothesis), fitted.effects)
-    for name in fitted.effects:
+    """The fit with the process noise that then remains; what is rough and all else are fitted in turns, while a turn gains much."""
+    found = _refined_once(case, fitted.fit.hypothesis, fitted.effects)
+    turns = MOST_TURNS if any(_is_rough(case, name) for name in fitted.effects) else 0
+    for _ in range(turns):
+        again = None if found is None else _refined_once(case, found.hypothesis, fitted.effects)
+        if found is None or again is None or again.log_posterior < found.log_posterior + decisions.TAKEN_IN:
+            break
+        found = again
+    return None if found is None else as_fitted(case, found)
+
+
+def _refined_once(case: Case, hypothesis: Hypothesis, effects: Sequence[str]) -> Fit | None:
+    """The noise that remains, then what is rough, then all else."""
+    start = with_jitter(case, coloured_noise_of(case, hypothesis), effects)
+    for name in effects:
         start = _polished(case, start, name, STEP_FINELY) if _is_rough(case, name) else start
-    for name in holding(case.library, fitted.effects):
+    for name in holding(case.library, effects):
         start = _likeliest(case, start, name, LEVELS)
     found = fit(case, start, rounds=REFINED_ROUNDS)
     for begun in [] if found is None else _rounder(case, found.hypothesis):
         found = _likelier(found, fit(case, begun, rounds=REFINED_ROUNDS))
-    return None if found is None else as_fitted(case, found)
+    return found
 
 
 def _rounder(case: Case, hypothesis: Hypothesis) -> list[Hypothesis]:
@@ -136,14 +149,20 @@ def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[floa
 
 
 def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:
-    """The start with the likeliest of what else is rough in an effect, over its whole range."""
+    """The start with the likeliest of what else is rough in an effect, over its whole range, and then beside that."""
     for parameter in case.library.effects[name].parameters:
         if parameter.rough and not parameter.is_size:
-            values = np.linspace(parameter.lower, parameter.upper, TRIED).tolist()
-            start = _likeliest_value(
-                case, start, name, parameter.symbol, [start.effects[name][parameter.symbol], *values]
-            )
+            values = np.linspace(parameter.lower, parameter.upper, TRIED)
+            start = _likeliest_of(case, start, name, parameter, values)
+            beside = start.effects[name][parameter.symbol] + (values[1] - values[0]) * np.linspace(-1.0, 1.0, TRIED)
+            start = _likeliest_of(case, start, name, parameter, np.clip(beside, parameter.lower, parameter.upper))
     return start
+
+
+def _likeliest_of(case: Case, start: Hypothesis, name: str, parameter: EffectParameter, values: Array) -> Hypothesis:
+    """The start with the likeliest of its own and these values of a parameter."""
+    tried = [start.effects[name][parameter.symbol], *values.tolist()]
+    return _likeliest_value(case, start, name, parameter.symbol, tried)
 
 
 def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | None:

@@ -2,9 +2,10 @@
 
 (1)  q round(x / q)
 
-A driver's may hold a step until its command is further away than half a step, as a comparator with hysteresis does:
+A driver's may lie beside the multiples by a share s of a step, as a converter that cuts off has them half a step away; and it may hold a
+step until its command is further away than half of one, as a comparator with hysteresis does:
 
-(2)  v stays while abs(u - v) <= (1/2 + h) q, else v = q round(u / q)
+(2)  v stays while abs(u - v) <= (1/2 + h) q, else v = q (round(u / q + s) - s)
 """
 
 from collections.abc import Iterator
@@ -37,13 +38,16 @@ def effects(model: Model) -> Iterator[Effect]:
                     role=Role.STEP,
                     rough=True,
                 ),
-                EffectParameter("h", "1", 0.0, 0.3, 0.0, starts=HOLDS, refining=True, rough=True),
+                EffectParameter("h", "1", 0.0, 0.3, 0.0, starts=HOLDS, refining=True, role=Role.HOLD, rough=True),
+                EffectParameter("s", "1", -0.5, 0.5, 0.0, starts=SHIFTS, refining=True, role=Role.SHIFT, rough=True),
             ),
-            equation="q round(u/q), held within (1/2 + h) q",
+            equation="q (round(u/q + s) - s), held within (1/2 + h) q",
             story="The driver knows only coarse steps of voltage.",
             source="a converter's or PWM's resolution; a comparator's hysteresis",
             prior=COMMON,
-            on_input=lambda values, column=column: Quantised(column, values["q"], values.get("h", 0.0)),
+            on_input=lambda values, column=column: Quantised(
+                column, values["q"], values.get("h", 0.0), values.get("s", 0.0)
+            ),
             smooth=False,
         )
     for place, sensor in model.places.sensors.items():
@@ -75,4 +79,5 @@ def effects(model: Model) -> Iterator[Effect]:
 
 INPUT_STEPS = (0.005, 0.01, 0.02, 0.04, 0.08)
 HOLDS = (0.0, 0.12)  # shares of a step: a converter has none, of a comparator any size is near one of both
+SHIFTS = (0.0, 0.25, 0.5, -0.25)  # shares of a step: any lies within an eighth of one of them
 OUTPUT_STEPS = (0.003, 0.006, 0.012, 0.025)

@@ -65,19 +65,22 @@ class Delay:
 
 @dataclass(frozen=True)
 class Quantised:
-    """The input `column` in steps of q, each of which holds until the command is (1/2 + `hold`) q away from it; 0 stands for none."""
+    """The input `column` in steps of q that lie `shift` q below its multiples, each of which holds until the command is (1/2 + `hold`) q
+    away from it; 0 stands for none."""
 
     column: int
     q: float
     hold: float = 0.0
+    shift: float = 0.0
     order: ClassVar[int] = 2
 
     def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
-        """See InputStage; remembers the step that holds."""
+        """See InputStage; remembers the step that holds, before it is shifted."""
         if self.q <= 0.0:
             return signal, None
-        values = signal.values.copy()
-        values[:, self.column], last = in_held_steps(values[:, self.column], self.q, self.hold, memory)
+        values, shift = signal.values.copy(), self.shift * self.q
+        reached, last = in_held_steps(values[:, self.column] + shift, self.q, self.hold, memory)
+        values[:, self.column] = reached - shift
         return Held(signal.edges_s, values), last
 
 

@@ -112,12 +112,12 @@ def in_held_steps(x: Array, step: float, hold: float, level: float | None) -> tu
 
 
 def in_held_steps_of_each(x: Array, steps: Array, hold: float) -> Array:
-    """The same in several steps (k,) side by side, each from the nearest on: (n, k)."""
-    nearest = in_steps(np.repeat(x[:, np.newaxis], len(steps), axis=1), steps)
+    """The same of x (n, k) in several steps (k,) side by side, each from the nearest on: (n, k)."""
+    nearest = in_steps(x, steps)
     if hold == 0.0:
         return nearest
     away, y, at = (0.5 + hold) * steps, np.empty_like(nearest), nearest[0]
-    for k, wanted in enumerate(x.tolist()):
+    for k, wanted in enumerate(x):
         at = y[k] = np.where(np.abs(wanted - at) > away, nearest[k], at)
     return y
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.detect.input_steps import likely_steps
+from diagnosis.detect.input_steps import Kind, likely_steps
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.detect.visibility import cannot_tell, hidden, judged
@@ -20,14 +20,21 @@ def test_steps_of_an_input_are_found_near_their_size() -> None:
     # Truth: the rig rounds its command to 0.2 V. Candidates lie half a percent apart, so one must lie within 1 %.
     case = arm_case(arm_log({"input.quantization": {"q": STEP_V}}))
     found = likely_steps(linearised(case, nominal_fit(case)), "input")
-    assert min(abs(step / STEP_V - 1.0) for step in found) < 0.01
+    assert min(abs(step / STEP_V - 1.0) for step, _ in found) < 0.01
 
 
-def test_steps_that_hold_are_found_near_their_size() -> None:
-    # Truth: the rig holds its steps of 0.2 V by 0.15 of one beyond their half; candidates hold by nothing or by 0.12.
-    case = arm_case(arm_log({"input.quantization": {"q": STEP_V, "h": 0.15}}))
-    found = likely_steps(linearised(case, nominal_fit(case)), "input", (0.0, 0.12))
-    assert min(abs(step / STEP_V - 1.0) for step in found) < 0.01
+@pytest.mark.parametrize(("shape", "kind"), [({"h": 0.15}, Kind(hold=0.12)), ({"s": 0.3}, Kind(shift=0.25))])
+def test_steps_that_hold_or_lie_elsewhere_are_found_near_their_size_with_what_they_are_like(
+    shape: dict[str, float], kind: Kind
+) -> None:
+    # Truth: the rig holds its steps of 0.2 V by 0.15 of one beyond their half, or has them 0.3 of one below the multiples; of the kinds that
+    # are tried the one near it must win.
+    case = arm_case(arm_log({"input.quantization": {"q": STEP_V, **shape}}))
+    kinds = (Kind(), Kind(hold=0.12), Kind(shift=0.25), Kind(shift=0.5), Kind(shift=-0.25))
+    found = likely_steps(linearised(case, nominal_fit(case)), "input", kinds)
+    step, told = min(found, key=lambda entry: abs(entry[0] / STEP_V - 1.0))
+    assert abs(step / STEP_V - 1.0) < 0.01
+    assert told == kind
 
 
 def test_one_pass_backwards_tells_how_any_disturbance_of_a_state_meets_the_innovations() -> None:

@@ -85,6 +85,16 @@ def test_a_step_holds_until_its_command_is_further_than_half_a_step_and_its_hold
     np.testing.assert_array_equal(plain.values[:, 0], [0.0, 2.0, 2.0, 0.0, 0.0, 4.0, 4.0, 8.0])
 
 
+def test_steps_that_lie_elsewhere_are_the_multiples_less_a_share_of_one_and_go_on_from_memory() -> None:
+    # Truth: v = 2 (round(u / 2 + 1/4) - 1/4), so -0.5, 1.5, 3.5 ..., each nearest to its u; held, it stays within 1.4 of its u.
+    u, v = [0.0, 0.6, 2.4, 2.6, 1.0], [-0.5, 1.5, 1.5, 3.5, 1.5]
+    plain, _ = Quantised(0, 2.0, 0.0, 0.25)(held(u, np.arange(6.0).tolist()), None)
+    np.testing.assert_array_equal(plain.values[:, 0], v)
+    _, memory = Quantised(0, 2.0, 0.2, 0.25)(held(u[:3], np.arange(4.0).tolist()), None)
+    late, _ = Quantised(0, 2.0, 0.2, 0.25)(held(u[3:], np.arange(3.0, 6.0).tolist()), memory)
+    np.testing.assert_array_equal(late.values[:, 0], [1.5, 1.5])
+
+
 def test_a_delay_moves_every_change_by_its_time_and_holds_the_first_input_before() -> None:
     late, _ = Delay((0,), 0.013)(held([1.0, 2.0, 3.0], [0.0, 0.01, 0.02, 0.03]), None)
     np.testing.assert_allclose(late.edges_s, [0.0, 0.01, 0.013 + 0.0, 0.02, 0.023, 0.03], rtol=0, atol=1e-15)
