@@ -27,8 +27,8 @@ def test_steps_of_an_input_are_found_near_their_size() -> None:
 def test_steps_that_hold_or_lie_elsewhere_are_found_near_their_size_with_what_they_are_like(
     shape: dict[str, float], kind: Kind
 ) -> None:
-    # Truth: the rig holds its steps of 0.2 V by 0.15 of one beyond their half, or has them 0.3 of one below the multiples; of the kinds that
-    # are tried the one near it must win.
+    # Truth: the rig holds its steps of 0.2 V by 0.15 of one beyond their half, or has them 0.3 of one below the multiples; of the kinds
+    # that are tried the one near it must win.
     case = arm_case(arm_log({"input.quantization": {"q": STEP_V, **shape}}))
     kinds = (Kind(), Kind(hold=0.12), Kind(shift=0.25), Kind(shift=0.5), Kind(shift=-0.25))
     found = likely_steps(linearised(case, nominal_fit(case)), "input", kinds)

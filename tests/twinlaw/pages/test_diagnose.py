@@ -366,6 +366,15 @@ def test_where_nothing_was_found_no_share_of_the_error_is_told() -> None:
     assert "How well the plant predicts" in page
 
 
+def test_no_gap_whose_predictions_miss_the_logs_held_out_is_not_called_as_small_as_usual() -> None:
+    # Truth: 11.5 floors off on the logs held out, so more is left than sensors leave, whatever explains it.
+    after = {"psi_rad": 0.01, "phi_rad": 0.046}
+    off = replace(GAP, verdict="no gap", false_alarm_probability=0.006, found=(), effects=())
+    told = summary_text(replace(off, shrinkage=replace(SHRINKAGE, rms_after=after)))
+    assert "as small as on a rig" not in told
+    assert "miss phi_rad by 11.5 times what its sensor leaves: 0.6 % of rigs" in told
+
+
 def test_no_gap_that_chance_does_not_give_says_why_it_is_none() -> None:
     small = replace(GAP, verdict="no gap", false_alarm_probability=1e-9, found=(), effects=())
     assert "no gap: something is there, too small or too unsure to count, although a rig" in summary_text(small)

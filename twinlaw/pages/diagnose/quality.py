@@ -4,24 +4,18 @@ from records.diagnosis import Diagnosis
 from records.quality import MISFIT, Colour, Look, Quality, flag
 from twinlaw.pages.diagnose.firmware import differs
 from twinlaw.pages.diagnose.retune import parameters_alone
-from twinlaw.pages.diagnose.words import doubts_in_words, words
+from twinlaw.pages.diagnose.words import doubts_in_words, misfits, words
 
 
 def diagnosis_quality(diagnosis: Diagnosis) -> Quality:
     """Errors on the logs held out against what their sensors leave, and a flag for a gap, for what cannot be told, for the firmware."""
-    shrinkage = diagnosis.shrinkage
-    left = (
-        {}
-        if shrinkage is None
-        else {name: (rms, shrinkage.rms_floor[name]) for name, rms in shrinkage.rms_after.items()}
-    )
     flags = [_verdict(diagnosis)]
     if differs(diagnosis.firmware):
         flags.append(flag("the firmware does not do as its table says", Colour.RED))
     if doubts_in_words(diagnosis.note_records):
         flags.append(flag("columns that may be others than they are called"))
-    misfits = [MISFIT.look(f"{name} on the logs held out", rms / floor) for name, (rms, floor) in left.items() if floor]
-    return Quality((*misfits, *(entry for entry in flags if entry is not None)))
+    looks = [MISFIT.look(f"{name} on the logs held out", misfit) for name, misfit in misfits(diagnosis).items()]
+    return Quality((*looks, *(entry for entry in flags if entry is not None)))
 
 
 def _verdict(diagnosis: Diagnosis) -> Look | None:

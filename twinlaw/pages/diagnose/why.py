@@ -15,7 +15,7 @@ _REASONS = {
     "too_little_seen": "Most effects of the library would go unseen in these logs, so that nothing shows in them says little.",
     "yielding_explains": "Axes that creep or give near rest, as dry friction does, explain what looked like a gap.",
     "unexplained": "What remains is small, and neither an effect of sure size nor other parameters explain it.",
-    "too_small": "What would explain the rest brings predictions over a second hardly closer: nothing that matters is missing.",
+    "too_small": "What would explain the rest brings predictions over a second hardly closer, so none of it is told.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",
     "parameters_alone": "Other values of the plant's own parameters are the likeliest explanation.",
     "named_not_added": "The likeliest effect does not predict the hold-out logs better, so the model stays without it.",

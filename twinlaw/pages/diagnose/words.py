@@ -7,6 +7,7 @@ from functools import cache
 from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
 from records.diagnosis import Diagnosis, Hypothesis
+from records.quality import MISFIT
 from records.reasons import DOUBTS, Note
 from records.text.functional_class import Dependence, parse_class
 from records.text.units import label, unit_of
@@ -145,11 +146,33 @@ def sized(
     return lines
 
 
+def misfits(diagnosis: Diagnosis) -> dict[str, float]:
+    """By output, the error over a second of the logs held out of the plant that is handed on, over what its sensor leaves."""
+    shrinkage = diagnosis.shrinkage
+    if shrinkage is None:
+        return {}
+    floors = shrinkage.rms_floor
+    return {name: rms / floors[name] for name, rms in shrinkage.rms_after.items() if floors[name]}
+
+
+def _missed(diagnosis: Diagnosis) -> str | None:
+    """The output that is missed most on the logs held out, with its misfit; None where all misfits are green."""
+    worst, misfit = max(misfits(diagnosis).items(), key=lambda entry: entry[1], default=("", 0.0))
+    if misfit <= MISFIT.green:
+        return None
+    return f"{worst} by {misfit:.3g} times what its sensor leaves"
+
+
 def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
     """What the chance of a false alarm says."""
     if diagnosis.verdict != "gap" and p > decisions.ALARM:
-        usual = "what remains is as small as on a rig that is as the plant file states, with its sensors"
-        return usual if p >= USUAL else f"{usual}: {percent(p)} of such rigs show as much"
+        missed = _missed(diagnosis)
+        usual = (
+            "what remains is as small as on a rig that is as the plant file states, with its sensors"
+            if missed is None
+            else f"no more shows than chance gives, yet predictions over a second of the logs held out miss {missed}"
+        )
+        return usual if p >= USUAL else f"{usual}: {percent(p)} of rigs as the plant file states show as much"
     seldom = (
         f"a rig that is as the plant file states, with its sensors, shows so large a gap with probability {chance(p)}"
     )
