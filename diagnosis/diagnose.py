@@ -12,7 +12,7 @@ from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.consequence import foreseen, foreseen_rules, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.rows import EARLY, LATE, demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Tried, Weighed, first_share, likeliest, weigh
@@ -195,17 +195,23 @@ def _ranked(
     logs: FittedLogs,
     known: Holdout | None = None,
 ) -> _Ranked:
-    """What was found, ranked; `known` is a hold-out that was made before."""
+    """What was found, ranked; `known` is a hold-out that was made before.
+
+    What predicts better is asked of all logs, whether a gap matters of those to explain alone: no further log makes a gap none.
+    """
     tried = _tried(seen, found, beyond)
-    ahead = foreseen(logs, tried)
-    tried, idle = without_idle(tried, ahead)
-    weighed = weigh(tried, ahead)
-    seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))
+    fitted_ahead = foreseen(logs, tried)
+    weighed = weigh(without_idle(tried, fitted_ahead)[0], fitted_ahead)
+    matters_nats = weighed.ahead_nats
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
+    ahead = fitted_ahead if holdout is None else with_held_out(fitted_ahead, holdout)
+    tried, idle = without_idle(tried, ahead)
+    weighed = replace(weigh(tried, ahead), ahead_nats=matters_nats)
+    seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))
     if holdout is None or not weighed.fitted:
         return _Ranked(seen.because(*weighed.decisions), weighed, holdout)
     told, notes, rules = asked(holdout, weighed.fitted[0])
-    weighed = weigh(tried, ahead, favour(told))
+    weighed = replace(weigh(tried, ahead, favour(told)), ahead_nats=matters_nats)
     return _Ranked(seen.because(*rules, *weighed.decisions), weighed, holdout, notes)
 
 

@@ -12,7 +12,7 @@ from diagnosis.result import Judged, Seen
 from diagnosis.search.beam import Search
 from diagnosis.search.retune import Retune
 from diagnosis.seeing import false_alarm
-from diagnosis.validate.fitted_logs import FittedLogs
+from diagnosis.validate.fitted_logs import readings_of
 
 
 def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
@@ -43,7 +43,7 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
     beyond = seen.detection.moved and furthest > decisions.FREE_SPREAD
     if beyond or (ahead_nats is None and not small):
         return seen, True
-    least = float(decisions.MATTERS) * FittedLogs(seen.case).readings
+    least = float(decisions.MATTERS) * readings_of(seen.case)
     least = max(least, -float(np.log(decisions.ALARM))) if small else least
     matters = ahead_nats is not None and ahead_nats >= least
     outcome = "matters" if matters else "no gap: too small to matter"

@@ -1,6 +1,6 @@
 """What logs that were not fitted say: how much better what was found predicts them, as one number with its standard error."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -14,9 +14,11 @@ from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
+from diagnosis.validate.fitted_logs import readings_of
 from diagnosis.validate.prediction import predictions
 from diagnosis.validate.score import Errors, Score, errors_of, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
+from jobs.thread_map import thread_map
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note
 from records.table import ControllerTable
@@ -130,6 +132,14 @@ def _outputs(case: Case) -> int:
     return max(
         1, int(np.any([np.isfinite(flight.filter_input.y).any(axis=0) for flight in case.flights], axis=0).sum())
     )
+
+
+def with_held_out(ahead: Mapping[FittedHypothesis, float], holdout: Holdout) -> dict[FittedHypothesis, float]:
+    """Nats by which each predicts the logs better than the plant alone: `ahead`, of the logs to explain, and those of the hold-out, in
+    which what happened in other logs has no say."""
+    readings = readings_of(holdout.case)
+    gains = thread_map(lambda entry: holdout.score(entry.fit.hypothesis).gain, list(ahead))
+    return {entry: nats + readings * gain for (entry, nats), gain in zip(ahead.items(), gains, strict=True)}
 
 
 def is_surely_better(told: Score) -> bool:

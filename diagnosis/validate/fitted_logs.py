@@ -31,9 +31,8 @@ class FittedLogs:
 
     @property
     def readings(self) -> int:
-        """How many readings of the logs share no error: one in each window of a second; LEAST_APART in short logs: of plants
-        whose errors pass sooner."""
-        return max(sum(len(windows(flight.log.t_s)) for flight in self.case.flights), decisions.LEAST_APART)
+        """See `readings_of`."""
+        return readings_of(self.case)
 
     def errors(self, hypothesis: Hypothesis) -> Errors:
         """The errors of its predictions."""
@@ -47,3 +46,9 @@ class FittedLogs:
 
     def _read(self, hypothesis: Hypothesis) -> list[Array]:
         return [predictions(self.case, flight, hypothesis) for flight in self.case.flights]
+
+
+def readings_of(case: Case) -> int:
+    """How many readings of the logs share no error: one in each window of a second; LEAST_APART in short logs: of plants whose errors pass
+    sooner."""
+    return max(sum(len(windows(flight.log.t_s)) for flight in case.flights), decisions.LEAST_APART)
