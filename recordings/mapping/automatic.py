@@ -23,6 +23,8 @@ def automatic(name: str, of: Source) -> str | None:
     suffix = unit_suffix(name)
     base, si = name.removesuffix(f"_{suffix}"), unit_of(name) or "1"
     alike = [known_name for known_name, signal in of.signals.items() if _base_in(known_name, signal, si) == base]
+    # one of that very name in a unit without a factor to the column's: which unit that is, is told where it converts
+    alike = alike or [known_name for known_name, signal in of.signals.items() if signal.unit and known_name == base]
     if len(alike) > 1 and of.group:
         alike = [candidate for candidate in alike if candidate.startswith(of.group)]
     if len(alike) > 1:

@@ -83,7 +83,7 @@ def factor_of(name: str, text: str, quantity: Quantity, of: Source) -> tuple[flo
     if quantity.unit is None:
         return 1.0, ", as typed"
     if not quantity.unit:
-        return 1.0, ""
+        return 1.0, "" if si == "1" else f", taken as {si}: no unit is stated"
     try:
         factor = factor_to(si, quantity.unit, of.per_turn)
     except ValueError as error:

@@ -174,3 +174,14 @@ def test_a_log_of_a_plant_without_inputs_is_its_outputs_and_a_wrapped_angle_is_c
     log = import_file(tmp_path / "log.csv", ColumnMapping(plant=str(plant))).log
     assert log.u.shape == (1001, 0)
     np.testing.assert_allclose(np.diff(log.y[:, 0]), 0.03, atol=1e-8)
+
+
+def test_a_unit_that_is_not_known_is_told_by_name_and_asked_for_and_none_is_said_to_be_none(tmp_path: Path) -> None:
+    """Truth: notches are no unit; a number that states none is taken as the column's, which is said."""
+    log = tmp_path / "log.csv"
+    log.write_text("t [s];u_M_V;u_T_V;psi [notches];Azimuth\n" + "".join(f"{k / 100};1;2;{k};0.5\n" for k in range(60)))
+    with pytest.raises(BadInput, match="no factor from notches to rad") as caught:
+        imported_here(log, mapped(phi_rad="Azimuth"))
+    assert "psi_rad=psi*FACTOR" in caught.value.remedy
+    done = imported_here(log, mapped(phi_rad="Azimuth", psi_rad="psi*0.01"))
+    assert any(told.startswith("phi_rad = Azimuth, taken as rad: no unit is stated") for told in done.found)

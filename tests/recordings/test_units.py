@@ -8,7 +8,10 @@ from recordings.units import UNITS, factor_to, suffix_of
 
 
 def test_no_spelling_and_no_suffix_means_two_units() -> None:
-    for spellings in ([s for unit in UNITS for s in unit.spellings], [s for unit in UNITS for s in unit.suffixes]):
+    for spellings in (
+        [s for unit in UNITS for s in (*unit.symbols, *unit.words)],
+        [s for unit in UNITS for s in (*unit.suffixes, *unit.words)],
+    ):
         assert len(spellings) == len(set(spellings))
 
 
@@ -28,6 +31,31 @@ def test_no_spelling_and_no_suffix_means_two_units() -> None:
         ("rad", "counts", 2 * pi / 4096),
         ("m/s^2", "g", 9.80665),
         ("1", "%", 0.01),
+        ("1", "‰", 1e-3),
+        ("rad", "Grad", pi / 180),
+        ("rad", "degrés", pi / 180),
+        ("rad", "grados", pi / 180),
+        ("rad", "grader", pi / 180),
+        ("rad", "Deg.", pi / 180),
+        ("rad", "LSB", 2 * pi / 4096),
+        ("rad", "Umdrehungen", 2 * pi),
+        ("rad/s", "Grad pro Sekunde", pi / 180),
+        ("rad/s", "°/min", pi / 10800),
+        ("rad/s", "degrees per second", pi / 180),
+        ("rad/s", "rad·s⁻¹", 1.0),
+        ("rad/s", "ticks/ms", 2e3 * pi / 4096),
+        ("rad/s", "upm", pi / 30),
+        ("rad/s", "tr/min", pi / 30),
+        ("rad/s", "krpm", 1e3 * pi / 30),
+        ("rad/s", "Hz", 2 * pi),
+        ("rad/s", "kHz", 2e3 * pi),
+        ("rad/s^2", "deg/s²", pi / 180),
+        ("rad/s^2", "mrad/s/s", 1e-3),
+        ("m/s", "km/h", 1 / 3.6),
+        ("s", "Sekunden", 1.0),
+        ("s", "milisegundos", 1e-3),
+        ("s", "mikrosekunder", 1e-6),
+        ("V", "voltios", 1.0),
     ],
 )
 def test_known_units_convert(si: str, unit: str, factor: float) -> None:
@@ -35,7 +63,17 @@ def test_known_units_convert(si: str, unit: str, factor: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("si", "unit", "told"), [("rad", "V", "V to rad"), ("V", "furlong", "furlong"), ("rad", "counts", "--per-turn")]
+    ("si", "unit", "told"),
+    [
+        ("rad", "V", "V to rad"),
+        ("V", "furlong", "furlong"),
+        ("rad", "counts", "--per-turn"),
+        ("s", "ticks", "ticks to s"),
+        ("V", "LSB", "LSB to V"),
+        ("rad", "grad", "400 to a turn"),  # of German, and of surveyors
+        ("rad/s", "grad/s", "400 to a turn"),
+        ("rad/s", "1/s", "turns a second"),
+    ],
 )
 def test_another_quantity_an_unknown_unit_and_counts_of_no_turn_are_refused(si: str, unit: str, told: str) -> None:
     with pytest.raises(ValueError, match=told):
@@ -59,6 +97,15 @@ def test_another_quantity_an_unknown_unit_and_counts_of_no_turn_are_refused(si: 
         ("shaftRpm", "rpm"),
         ("SpeedRef", ""),
         ("MainV", ""),
+        ("Winkel_Grad", "Grad"),
+        ("WinkelGrad", "Grad"),
+        ("PSI_DEG", "DEG"),
+        ("angle_degrés", "degrés"),
+        ("t_µs", "µs"),
+        ("q_deg_per_s", "deg_per_s"),
+        ("a_mrad_s2", "mrad_s2"),
+        ("u_M", ""),
+        ("psi_second", ""),
     ],
 )
 def test_a_unit_is_read_off_the_end_of_a_name(name: str, suffix: str) -> None:
