@@ -78,10 +78,21 @@ def _rounded_to(values: Array, digits: int) -> Array:
 
 
 def _by_chance(values: Array, step: float, digits: int) -> bool:
-    """Whether a sensor's own steps look like few digits: readings of 0.001 each up to 0.999, and 1 besides, which needs no more."""
+    """Whether even steps look like few digits: readings of 0.001 each up to 0.999, and 1 besides, which needs no more.
+
+    They are the sensor's own, or those of a coarser grid on which all readings lie: 0.2, 0.4 to 0.8, and 1.
+    """
     own = values[values != 0.0]
-    coarse = np.unique(own[_rounded_to(own, digits) > step * (1.0 + WHOLE)])
-    return 0 < coarse.size < thresholds.LEAST_COARSE and _phase(values, step) > thresholds.ON_GRID
+    on_sensors = _phase(values, step) > thresholds.ON_GRID
+    even = step if on_sensors else _even_step(values)
+    coarse = np.unique(own[_rounded_to(own, digits) > even * (1.0 + WHOLE)])
+    return even > 0.0 and coarse.size < thresholds.LEAST_COARSE and (coarse.size > 0 or not on_sensors)
+
+
+def _even_step(values: Array) -> float:
+    """The least difference of readings where all are whole numbers of it apart; 0 where they are not."""
+    gaps = np.diff(np.unique(values))
+    return float(gaps.min()) if gaps.size and are_whole(gaps / gaps.min()) else 0.0
 
 
 def printed_digits(values: Array) -> int | None:

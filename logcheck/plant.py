@@ -9,6 +9,7 @@ from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
 from logcheck.grid import are_whole, grid_findings, is_on, some
 from logcheck.motion import exchange_findings, motion_findings
+from logcheck.scale import fits_better
 from logcheck.standing import locked_findings, off_findings
 from logcheck.units import rate_unit, reference_unit, rotor_unit
 from records.errors import BadInput
@@ -50,7 +51,7 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
     yield from slow
     if any(entry.finding.severity == REFUSE for entry in slow):
         return
-    slips = [slip for column in log.columns.outputs for slip in _angle_unit(log, name, column, facts)]
+    slips = [slip for column in log.columns.outputs for slip in _angle_unit(log, name, column, bound, facts)]
     slips += [*_input_unit(log, name, facts), *_machine_unit(log, name, bound, facts)]
     yield from slips
     if slips:  # everything else would follow from the wrong unit
@@ -78,13 +79,17 @@ def _time_unit(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
     yield Found(Finding("time_unit", name, "t_s", *span, sentence, severity, 0, expected, remedy))
 
 
-def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[Found]:
-    """Degrees or counts where radians should be, where the numbers are an angle of the plant in that unit; else no angle at all."""
+def _angle_unit(log: RunLog, name: str, column: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
+    """Degrees or counts where radians should be, where the numbers are an angle of the plant in that unit; else no angle at all.
+
+    Steps of a sensor in degrees may be those of a coarser one in radians: within the stops the plant's own motion tells them apart.
+    """
     values, step = some(log.column(column)), facts.steps.get(column, 0.0)
     if not column.endswith("_rad") or values.size < 2 or values.min() == values.max():
         return
     widest, greatest = _widest(column, facts), _greatest(values)
     on_grid = step > 0.0 and is_on(values, step)
+    in_steps = step > 0.0 and is_on(values, step * DEGREE)
     whole = are_whole(values)
     is_beyond = np.isfinite(widest) and greatest > max(
         thresholds.FAR_BEYOND * widest, widest + 3.0 * thresholds.BEYOND_STOP_rad
@@ -98,7 +103,9 @@ def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Itera
         and 3.0 < greatest <= (min(widest, thresholds.MOST_rad) + thresholds.BEYOND_STOP_rad) / step
     ):
         unit = "encoder counts"
-    elif not on_grid and ((step > 0.0 and is_on(values, step * DEGREE)) or (is_beyond and in_degrees)):
+    elif not on_grid and (
+        (is_beyond and in_degrees) or (in_steps and (is_beyond or fits_better(log, bound, column, DEGREE)))
+    ):
         unit = "degrees"
     if unit is not None:
         sentence = f"{column} is in {unit}: up to {greatest:.4g}"

@@ -11,6 +11,7 @@ from logcheck.integrity import Integrity, demand, examine
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
 from sim.columns import log_columns
+from sim.equilibrium import equilibrium
 from sim.simulate import simulate
 from tests.law_tables import ce150_table
 from tests.replay.firmware_flights import flown, lively, plant, rows_of
@@ -114,11 +115,43 @@ def test_what_makes_a_log_worthless_is_refused_by_name(spoil: Spoil, kind: str, 
     assert caught.value.remedy
 
 
-def test_degrees_within_the_stops_are_known_by_the_encoders_grid() -> None:
-    log = clean()
-    small = _column(log, "psi_rad", np.round(log.y[:, 0] / 60.0 / TURN_STEP_RAD) * TURN_STEP_RAD * 180.0 / np.pi)
-    assert np.abs(small.y[:, 0]).max() < 0.7
-    assert _kinds(_examined(small), "refuse") == {"unit_slip"}
+def _around_rest() -> RunLog:
+    """A run in which both inputs swing about those that hold the arm level, by so little that the axes move by a degree."""
+    t_s, rest = np.arange(2001) * 0.01, equilibrium(plant(), 0.0)
+    u = rest.u0 + np.column_stack([0.03 * np.sin(3.0 * t_s), 0.2 * np.sin(2.0 * t_s)])
+    return replace(
+        clean(),
+        t_s=t_s,
+        u=u,
+        y=simulate(plant(), t_s, rest.x0, u, keep="y").y,
+        loop="open",
+        extra={},
+        table_digest=None,
+    )
+
+
+def _read_in(log: RunLog, column: str, step_rad: float, scale: float) -> RunLog:
+    return _column(log, column, np.round(log.column(column) / step_rad) * step_rad * scale)
+
+
+@pytest.mark.parametrize("column", ["psi_rad", "phi_rad"])
+def test_degrees_within_the_stops_are_told_from_coarse_radians_by_how_the_plant_moves(column: str) -> None:
+    """Truth: a small run in degrees; and a large one in radians, of a sensor as coarse as the encoder's step is in degrees."""
+    small, large = _around_rest(), clean()
+    degrees = _read_in(small, column, TURN_STEP_RAD, 180.0 / np.pi)
+    coarse_rad = TURN_STEP_RAD * 180.0 / np.pi
+    assert 3.0 * coarse_rad < np.ptp(degrees.column(column)) < 2.5
+    assert [(found.kind, found.column) for found in _examined(degrees).refusals] == [("unit_slip", column)]
+    for whole in (1.0, 2.0, 4.0):
+        assert not _examined(_read_in(replace(large, extra={}), column, whole * coarse_rad, 1.0)).refusals
+
+
+@pytest.mark.parametrize("step_rad", [0.05, 0.1, 0.2, 0.25, 0.5])
+def test_a_coarse_sensor_of_round_steps_is_no_print_of_few_digits(step_rad: float) -> None:
+    """Truth: readings in even steps up to 1 rad, which needs no more digits than they."""
+    coarse = _read_in(replace(clean(), extra={}), "phi_rad", step_rad, 1.0)
+    assert np.abs(coarse.column("phi_rad")).max() == 1.0
+    assert not _examined(coarse).refusals
 
 
 def test_angles_of_radians_beyond_the_stops_are_not_called_degrees_or_counts() -> None:

@@ -1,0 +1,81 @@
+"""Whether a measured position moves as the plant does, or so many times as far: which of two units it is in.
+
+A grid does not tell: steps of 0.2 rad are those of a sensor of 0.2 deg in degrees, and of a coarse sensor in radians.
+"""
+
+import numpy as np
+
+from logcheck.finding import Array
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.simulate import simulate
+
+AHEAD_S = 0.5  # over which inputs bend a path by more than a coarse sensor rounds it
+SETTLE_S = 2.0  # with the first inputs before a log: rotors turn as these make them
+WINDOWS = 200  # spread over a log: time
+
+
+def fits_better(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> bool:
+    """Whether an output that is an axis' position, divided so, is nearer to what the model does with the logged inputs than as it stands.
+
+    A window's error is the model's position AHEAD_S later less the one that was read, both against going on straight on:
+    R = sum (y - y_model)^2 / sum (y - y_straight)^2. In the right unit R is below that in the wrong one: numbers too large by 57 bend 57
+    times as far as the model does, R near 1; numbers too small bend a 57th of it, R far above. False where no window can be simulated.
+    """
+    as_it_stands, divided = (_misfit(log, bound, column, scale) for scale in (1.0, divided_by))
+    return divided < as_it_stands
+
+
+def _misfit(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> float:
+    """R of an output divided by a factor; infinite where nothing can be simulated."""
+    rows = max(2, round(AHEAD_S / log.sample_period_s))
+    half = rows // 2
+    y = log.column(column) / divided_by
+    starts = _starts(log, y, rows, half)
+    if not starts.size:
+        return np.inf
+    rate = (y[starts + half] - y[starts - half]) / (2 * half * log.sample_period_s)
+    straight = y[starts] + rate * rows * log.sample_period_s
+    begun = _states(log, bound)[starts]
+    for axis in bound.model.axes:
+        outputs = [out for out, expression in bound.model.outputs.items() if str(expression) == str(axis.position)]
+        if outputs:
+            place, own = outputs[0], outputs[0] == column
+            read = y if own else log.column(place)
+            begun[:, _index(bound, str(axis.position))] = read[starts]
+            slope = (read[starts + half] - read[starts - half]) / (2 * half * log.sample_period_s)
+            begun[:, _index(bound, str(axis.velocity))] = slope
+    u = np.stack([log.u[start : start + rows + 1] for start in starts])
+    times = np.arange(rows + 1) * log.sample_period_s
+    with np.errstate(all="ignore"):
+        runs = simulate(bound, times, begun, u, resolution=np.zeros(len(bound.model.outputs)), keep="y")
+    if runs.y is None:
+        return np.inf
+    model = runs.y[:, -1, list(bound.model.outputs).index(column)]
+    error, bend = y[starts + rows] - model, y[starts + rows] - straight
+    told = np.isfinite(error) & np.isfinite(bend)
+    whole = float(np.sum(bend[told] ** 2))
+    return float(np.sum(error[told] ** 2)) / whole if whole > 0.0 else np.inf
+
+
+def _starts(log: RunLog, y: Array, rows: int, half: int) -> np.ndarray:
+    """Rows from which windows begin: at even times within, every output of them read."""
+    every = np.linspace(half, len(y) - rows - 1, WINDOWS).astype(int) if len(y) > rows + half + 1 else np.arange(0)
+    read = np.isfinite(y) & np.isfinite(log.y).all(axis=1)
+    span = (rows + half) * log.sample_period_s
+    even = [k for k in np.unique(every) if abs(log.t_s[k + rows] - log.t_s[k - half] - span) < log.sample_period_s]
+    return np.array([k for k in even if read[k - half] and read[k] and read[k + half] and read[k + rows]], dtype=int)
+
+
+def _states(log: RunLog, bound: BoundPlant) -> Array:
+    """All states of a free run with the log's inputs, shape (rows, states): for those that no axis has, rotors and windings."""
+    before = max(1, round(SETTLE_S / log.sample_period_s))
+    u = np.concatenate([np.repeat(log.u[:1], before, axis=0), log.u])
+    with np.errstate(all="ignore"):
+        runs = simulate(bound, np.arange(len(u)) * log.sample_period_s, np.zeros(len(bound.model.states)), u, keep="x")
+    states: Array = np.nan_to_num(np.asarray(runs.x))[before:]
+    return states
+
+
+def _index(bound: BoundPlant, state: str) -> int:
+    return [str(each) for each in bound.model.states].index(state)
