@@ -14,6 +14,7 @@ from records.protocol import PROTOCOL
 from rig.emulator.ports.serial_port import register_emulated_ports
 
 # What a lock and a driver answer where a port is open already.
+_OUTPUT_SPEED = 5  # of what termios tells
 _IN_USE = {errno.EAGAIN, errno.EBUSY}
 
 
@@ -42,6 +43,7 @@ def open_port(url: str, *, timeout_s: float, lines: ModemLines = LEFT_ALONE) -> 
         port = serial.serial_for_url(url, do_not_open=True, baudrate=rate, timeout=timeout_s, exclusive=True)
         _ask(port, lines)
         port.open()
+        _demand_rate(port, url, rate)
         return port
     except (OSError, ValueError) as error:
         if isinstance(error.__cause__, BadInput):
@@ -91,6 +93,27 @@ def _ask(port: Any, lines: ModemLines) -> None:
         port._update_rts_state = _untouched
     else:
         port.rts = lines.rts
+
+
+def _demand_rate(port: Any, url: str, rate: int) -> None:
+    """Raise BadInput where the driver took another speed than asked for: one that has not got it takes the nearest without a word."""
+    try:
+        import termios
+
+        asked, took = getattr(termios, f"B{rate}"), termios.tcgetattr(port.fileno())[_OUTPUT_SPEED]
+    except (ImportError, AttributeError, OSError, termios.error):
+        return  # an emulated board, or a system that has no such speeds
+    if took == asked:
+        return
+    port.close()
+    names = (name[1:] for name in dir(termios) if name[1:].isdigit() and getattr(termios, name) == took)
+    raise BadInput(
+        what="serial port",
+        where=url,
+        got=f"an adapter that runs at {next(names, 'another speed')} baud",
+        expected=f"{rate} baud",
+        remedy="use an adapter whose driver has that speed: an ST-LINK's own port, FT232, CP2102 or CH340",
+    )
 
 
 def _untouched() -> None:

@@ -71,3 +71,21 @@ def test_an_adapter_that_waits_is_told_with_the_command_that_shortens_it(tmp_pat
     told = str(latency_note("/dev/ttyUSB7", 0.017, tmp_path))
     assert "a round trip takes 17 ms: the adapter's latency timer is 16 ms" in told
     assert f"echo 1 | sudo tee {timer}" in told
+
+
+def test_an_adapter_without_the_line_s_speed_is_told_with_the_speed_that_it_took(
+    device: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Truth: a driver that has 115200 baud at most takes that for 921600, without a word."""
+    kernel = termios.tcsetattr
+
+    def slow(handle: int, when: int, settings: list[object]) -> None:
+        at_most = [termios.B115200 if entry == termios.B921600 else entry for entry in settings]
+        kernel(handle, when, at_most)
+
+    monkeypatch.setattr(termios, "tcsetattr", slow)
+    with pytest.raises(BadInput, match="runs at 115200 baud") as caught:
+        open_port(device, timeout_s=0.1)
+    assert caught.value.expected == "921600 baud"
+    monkeypatch.undo()
+    open_port(device, timeout_s=0.1).close()  # nobody holds it
