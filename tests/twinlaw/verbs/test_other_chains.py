@@ -1,6 +1,7 @@
 """The forward chain on plants that are no helicopter: design, generate, verify, simulate, and `run` all the way to the board."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -101,8 +102,8 @@ def test_what_is_the_helicopter_s_alone_says_so(tmp_path: Path, capsys: pytest.C
     assert said.count("\n") == 1
 
 
-def test_any_loop_is_swept(tmp_path: Path) -> None:
-    # Truth: the first loop alone is there, and moves by the amplitude about the middle of its references.
+def test_any_loop_is_swept_and_its_page_names_no_paper(tmp_path: Path) -> None:
+    # Truth: the first loop alone is there, and moves by the amplitude about the middle of its references. No paper has this plant.
     plant = str(plant_file("inverted_arm", tmp_path))
     words = ["--amplitudes", "0.05", "--band-rad-s", "2", "8", "--out", str(tmp_path / "swept")]
     assert main(["sweep", "--plant", plant, *words]) == 0
@@ -111,3 +112,8 @@ def test_any_loop_is_swept(tmp_path: Path) -> None:
     reference = load_log(path, log_columns(load_bound(Path(plant)).model)).column("theta_ref_rad")
     assert path.name == "sweep_arm.csv"
     assert np.abs(reference).max() == pytest.approx(0.05, rel=0.05)
+    matched = ["identify", "--method", "frequency", "--plant", plant, "--out", str(tmp_path / "found")]
+    assert main([*matched, "--band-rad-s", "2", "8", "--free", "J", str(path)]) == 0
+    headings = re.findall(r"<h2>(.*?)</h2>", (tmp_path / "found" / "report.html").read_text())
+    assert {"The identified A and B", "Frequency responses"} <= set(headings)
+    assert not [heading for heading in headings if "Fig." in heading or "eq (" in heading]

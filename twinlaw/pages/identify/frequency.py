@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from identification.frequency.flights.transfer import BANDWIDTH_rad_s
+from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.models.lateral_record import LateralFlight
 from identification.frequency.quality import frequency_quality
 from identification.frequency.result import FrequencyIdentification, TimeCheck
@@ -43,7 +44,7 @@ def frequency_page(
     ]
     return Page(
         title=f"{found.result.plant.name}: identified in the frequency domain",
-        verdict=f"{told} of {len(estimates)} parameters identified; J = {found.fit.J:.1f}; {remarked(len(found.notes))}.",
+        verdict=f"{told} of {len(estimates)} parameters identified; cost J = {found.fit.J:.1f}; {remarked(len(found.notes))}.",
         colour=quality.colour,
         why=quality_sentence(quality),
         facts=(("Equations", found.result.plant.model),),
@@ -62,12 +63,22 @@ def _parameters(found: FrequencyIdentification, truth: Truth | None) -> Section:
 
 def _matrices(found: FrequencyIdentification, truth: Truth | None) -> Section:
     """A and B with what they may be off by."""
+    about = "trim" if _is_of_paper(found) else "rest point"
     sentence = (
-        "x' = A x + B u about the trim, of the values that plant.toml holds; each element with its 95 % interval, none where it is "
+        f"x' = A x + B u about the {about}, of the values that plant.toml holds; each element with its 95 % interval, none where it is "
         "known. An element's unit is that of its row over that of its column."
     )
     tables = [*matrix_tables(found), *([] if truth is None else element_tables(found, truth))]
-    return Section("The identified A and B, eq (8)", (sentence,), tuple(tables))
+    return Section(f"The identified A and B{_as_in(found, ', eq (8)')}", (sentence,), tuple(tables))
+
+
+def _is_of_paper(found: FrequencyIdentification) -> bool:
+    return found.result.plant.model == LATERAL
+
+
+def _as_in(found: FrequencyIdentification, place: str) -> str:
+    """The place of the paper that a section redraws, where the plant is the paper's."""
+    return place if _is_of_paper(found) else ""
 
 
 def _flown(flown: LateralFlight, plots: Mapping[str, str]) -> Section:
@@ -88,14 +99,17 @@ def _responses(found: FrequencyIdentification, plots: Mapping[str, str], truth: 
         "Conditioned frequency responses from windows of "
         + ", ".join(f"{entry.length_s:.3g}" for entry in fit.responses.windows)
         + " s; points are those that were matched. A dotted line is the plant file as it was.",
-        f"Secant searches from {len(fit.searches)} starts ended at J = "
+        f"Secant searches from {len(fit.searches)} starts ended at a cost J of "
         + ", ".join(f"{entry.J:.4g}" for entry in fit.searches)
-        + f", before finite windows were corrected for; with that J = {fit.J:.4g}.",
+        + f", before finite windows were corrected for; with that it is {fit.J:.4g}.",
         "Misfit is what the model leaves over what random errors explain, both rms.",
     )
     shown = tuple(plots[response_name(name)] for name in fit.model.outputs)
     return Section(
-        "Frequency responses (Fig. 5)", sentences, (Table(pair_rows(found, truth), pair_heading(truth)),), shown
+        f"Frequency responses{_as_in(found, ' (Fig. 5)')}",
+        sentences,
+        (Table(pair_rows(found, truth), pair_heading(truth)),),
+        shown,
     )
 
 
@@ -104,7 +118,7 @@ def _check(found: FrequencyIdentification, check: TimeCheck, plots: Mapping[str,
     anew = "" if np.isinf(check.window_s) else f" It starts anew every {check.window_s:g} s, as the loop was closed."
     sentence = f"A record that was not matched: the identified model under its inputs; start and trim are fitted, nothing else.{anew}"
     return Section(
-        f"Verification in time: {check.name} (Fig. 6)",
+        f"Verification in time: {check.name}{_as_in(found, ' (Fig. 6)')}",
         (sentence,),
         (Table(check_rows((check,), found.fit.model.outputs), CHECK_HEADING),),
         (plots[check_name(check)],),

@@ -22,7 +22,7 @@ PAIR_HEADING = (
     "output",
     "matched over",
     "coherence",
-    "J",
+    "cost J",
     "misfit",
     "model off by",
     "plant file off by",

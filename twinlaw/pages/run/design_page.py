@@ -71,16 +71,22 @@ def _margins(report: DesignReport) -> Section:
     if not report.is_scheduled:
         return Section("Margins", (told,), (table,))
     psi_deg = shown(report.scheduled_by)[1] * report.psi_rad
+    alone = len(report.axes) == 1
 
     def panel(label: str, figure: str, scale: float) -> Panel:
         curves = [
-            Curve(psi_deg, scale * np.array([getattr(m, figure) for m in axis.margins]), axis.axis, colour, dash)
+            Curve(
+                psi_deg,
+                scale * np.array([getattr(m, figure) for m in axis.margins]),
+                "" if alone else axis.axis,
+                colour,
+                dash,
+            )
             for axis, (colour, dash) in zip(report.axes, LOOKS, strict=False)
         ]
         return Panel(label, curves)
 
-    alone = len(report.axes) == 1
-    coupled = Curve(psi_deg, report.coupled_slowest_rad_s, report.axes[0].axis if alone else "all loops", GREY)
+    coupled = Curve(psi_deg, report.coupled_slowest_rad_s, "" if alone else "all loops", GREY)
     panels = (
         panel("largest sensitivity Ms [-]", "sensitivity", 1.0),
         panel("phase margin [deg]", "phase_rad", 180.0 / math.pi),
@@ -203,7 +209,7 @@ def _migration(report: DesignReport) -> Section:
     return Section(
         "Why the delta form: where the slowest pole goes when the table is stored",
         (
-            "The same controllers in powers of delta = 1 - z^-1 (what is generated) and in powers of z^-1 (the paper's eq (22)), exact "
+            "The same controllers in powers of delta = 1 - z^-1 (what is generated) and in powers of z^-1, exact "
             f"{'at every point or fitted' if report.is_scheduled else 'or as kept'}, stored in double, in float32, or printed with few "
             f"digits.{' The worst of all points.' if report.is_scheduled else ''}",
         ),
