@@ -51,6 +51,8 @@ def _described(name: str, of: Source) -> str:
 def _base_in(name: str, signal: Signal, si: str) -> str | None:
     """The name of a signal without its unit, where that is one of `si`."""
     last = re.split(r"[.:]", without_device(name))[-1]
+    if not signal.unit and not suffix_of(last) and suffix_of(signal.heading):  # a topic's number, a scope's label
+        last = signal.heading
     suffix = suffix_of(last)
     unit = known(signal.unit) if signal.unit else (unit_of_suffix(suffix) if suffix else None)
     if unit is None or unit.si != si or signal.values.ndim != 1:

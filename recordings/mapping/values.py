@@ -48,11 +48,12 @@ def single(reference: Reference, of: Source) -> Quantity | None:
 
 
 def unit_for(name: str, signal: Signal, si: str) -> str:
-    """The unit of a signal: the stated one, else the one that its name ends in; a single letter that does not fit is no unit."""
+    """The unit of a signal: the stated one, else the one that its name, or what the file calls it, ends in; a single letter that does not
+    fit is no unit."""
     clocks = unit_of_clock(name) if si == "s" else ""
     if clocks and not signal.unit.strip():
         return clocks
-    suffix = suffix_of(name)
+    suffix = suffix_of(name) or suffix_of(signal.heading)
     if signal.unit.strip() or not suffix:
         return signal.unit.strip()
     return "" if len(suffix) == 1 and unit_of_suffix(suffix).si != si else suffix

@@ -185,3 +185,16 @@ def test_a_unit_that_is_not_known_is_told_by_name_and_asked_for_and_none_is_said
     assert "psi_rad=psi*FACTOR" in caught.value.remedy
     done = imported_here(log, mapped(phi_rad="Azimuth", psi_rad="psi*0.01"))
     assert any(told.startswith("phi_rad = Azimuth, taken as rad: no unit is stated") for told in done.found)
+
+
+def test_a_topic_or_label_that_ends_in_a_unit_is_converted_like_a_name() -> None:
+    """Truth: a topic /psi_deg of one number, and a scope's signal with the label phi_mrad."""
+    degrees = Signal(np.degrees(RUN["psi_rad"]), clock="t_s", heading="psi_deg")
+    thousandths = Signal(1e3 * RUN["phi_rad"], clock="t_s", heading="phi_mrad")
+    others = {name: Signal(RUN[name], clock="t_s") for name in ("u_M_V", "u_T_V")}
+    contents = Contents(
+        {"t_s": Signal(T_S, "s"), "/psi_deg.data": degrees, "Scope.signals(1).values": thousandths, **others}
+    )
+    for said in ({}, {"psi_rad": "/psi_deg.data", "phi_rad": "phi_mrad"}):
+        log = log_of_contents(contents, "log", mapped(**said), CE150).log
+        np.testing.assert_allclose(log.y, np.column_stack([RUN["psi_rad"], RUN["phi_rad"]]), atol=1e-12)

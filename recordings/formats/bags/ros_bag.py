@@ -14,10 +14,12 @@ def read(path: Path, asked: TextLayout) -> Contents:
     """The numbers of every topic; raises BadInput when rosbags is not installed, and for what is no bag."""
     package("rosbags", "ros", path)
     bag = path.parent if path.suffix == ".db3" else path
-    if path.is_dir() and not (path / "metadata.yaml").exists():
-        raise BadInput(
-            "folder", str(path), "no metadata.yaml in it", "a ROS 2 bag", "name a file, or the folder of a bag"
-        )
+    folder = path if path.is_dir() else path.parent
+    if path.suffix != ".bag" and not (folder / "metadata.yaml").exists():
+        got, remedy = "no metadata.yaml beside it", "copy that too, or `ros2 bag reindex FOLDER` makes it anew"
+        if path.is_dir():
+            got, remedy = "no metadata.yaml in it", f"name a file, or the folder of a bag; {remedy.partition('or ')[2]}"
+        raise BadInput("folder" if path.is_dir() else "ROS bag", str(path), got, "a ROS 2 bag", remedy)
     unread: dict[str, str] = {}
     return contents_of(_messages(bag, unread), unread)
 

@@ -125,7 +125,7 @@ def _mcap_json(path: Path) -> None:
         writer.finish()
 
 
-def _bag(path: Path) -> None:
+def _bag(path: Path, storage: str = "SQLITE3", packed: str = "NONE") -> None:
     """A ROS 2 bag: numbers by topic, and a stamped vector that is recorded 3 ms late."""
     rosbag2, typesys = pytest.importorskip("rosbags.rosbag2"), pytest.importorskip("rosbags.typesys")
     store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
@@ -134,7 +134,10 @@ def _bag(path: Path) -> None:
         store.types[f"{name}"]
         for name in ("std_msgs/msg/Header", "builtin_interfaces/msg/Time", "geometry_msgs/msg/Vector3")
     )
-    with rosbag2.Writer(path, version=9) as writer:
+    writer = rosbag2.Writer(path, version=9, storage_plugin=rosbag2.StoragePlugin[storage])
+    if packed != "NONE":
+        writer.set_compression(rosbag2.CompressionMode[packed], rosbag2.CompressionFormat.ZSTD)
+    with writer:
         topics = [
             writer.add_connection(name, kind.__msgtype__, typestore=store)
             for name, kind in (("/u_V", number), ("/arm", vector))
@@ -145,6 +148,12 @@ def _bag(path: Path) -> None:
             writer.write(topics[1], ns + 3_000_000, store.serialize_cdr(arm, vector.__msgtype__))
 
 
+def _mcap_of_ros(path: Path) -> None:
+    """The MCAP file of a ROS 2 bag, without its folder."""
+    _bag(path.parent / "bag", "MCAP")
+    (path.parent / "bag" / "bag.mcap").rename(path)
+
+
 CASES: Mapping[str, tuple[str, Callable[[Path], None], dict[str, str]]] = {
     "version 7.3": ("run.mat", lambda path: _hdf5(path, scope=False), {}),
     "version 7.3, a scope": ("run.mat", lambda path: _hdf5(path, scope=True), {}),
@@ -153,7 +162,21 @@ CASES: Mapping[str, tuple[str, Callable[[Path], None], dict[str, str]]] = {
     "Parquet of arrays": ("run.parquet", _parquet_arrays, {"u_V": "both[0]", "q_m": "both[1]*0.001"}),
     "MCAP of JSON": ("run.mcap", _mcap_json, {"q_m": "/rig.arm.q[1]"}),
     "ROS 2 bag": ("run", _bag, {"q_m": "arm.vector.y"}),
+    "ROS 2 bag of MCAP": ("run", lambda path: _bag(path, "MCAP"), {"q_m": "arm.vector.y"}),
+    "ROS 2 bag, packed": ("run", lambda path: _bag(path, packed="MESSAGE"), {"q_m": "arm.vector.y"}),
+    "MCAP of ROS 2": ("run.mcap", _mcap_of_ros, {"q_m": "arm.vector.y"}),
 }
+
+
+def test_a_bag_s_file_without_what_describes_it_is_refused_with_the_command_that_makes_it(tmp_path: Path) -> None:
+    _bag(tmp_path / "run")
+    alone = (tmp_path / "run" / "run.db3").rename(tmp_path / "alone.db3")
+    for path in (alone, tmp_path / "run"):
+        (tmp_path / "run" / "metadata.yaml").unlink(missing_ok=True)
+        with pytest.raises(BadInput, match="no metadata") as caught:
+            _log(path, q_m="arm.vector.y")
+        assert str(path) in caught.value.where
+        assert "ros2 bag reindex" in caught.value.remedy
 
 
 @pytest.mark.parametrize("case", CASES)
