@@ -83,6 +83,8 @@ def test_another_plant_s_controllers_fly_its_own_steps(other: Path) -> None:
     page = (other / "controllers-quanser_aero.md").read_text()
     assert "IAE of pitch in deg s / yaw in deg s" in page
     assert "Fig. 23" not in page
+    assert "eq (28)" not in page
+    assert "they are that plant's. Here the loops are\npitch (theta_rad, by u_M_V) and yaw (psi_rad, by u_T_V)." in page
 
 
 @pytest.mark.soak

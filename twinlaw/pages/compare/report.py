@@ -57,6 +57,8 @@ def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
             stem=where.stem,
             open_loop=where.open_loop,
             is_papers=where.is_papers,
+            of_input="voltage" if where.is_papers else "input",
+            loops=" and ".join(f"{loop.axis} ({loop.output}, by {loop.input})" for loop in loops),
             whose={1: "the one axis", 2: "both axes"}.get(len(loops), "all axes"),
             axes_iae=" / ".join(f"{loop.axis} in {shown(loop.output)[0]} s" for loop in loops),
             refused=[f"`{name}`: {why}" for name, why in told.refused.items()],
