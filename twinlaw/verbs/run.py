@@ -6,18 +6,20 @@ Loops other than the helicopter's have pins where the plant file's section [boar
 
 import argparse
 import json
+from dataclasses import asdict
 
 from records.files import remove_all, write_atomic
 from records.log import save_log
+from records.quality import quality_facts
 from records.table import table_text
 from records.verification import verification_text
 from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.page import page_text
 from twinlaw.pages.run.checks import size_rows, verification_rows
-from twinlaw.pages.run.design import design_heading, design_rows
+from twinlaw.pages.run.design import design_facts, design_heading, design_rows
 from twinlaw.pages.run.report import run_page
-from twinlaw.pages.run.tracking import TRACKING_HEADING, left_sentence, tracking_rows
+from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, left_sentence, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.designing import Designed, design_controller, poles_of, roll_off_trade
@@ -70,16 +72,11 @@ def run(chosen: argparse.Namespace) -> int:
     )
     write_atomic(out / "report.html", page_text(page))
     if chosen.json:
-        print(
-            json.dumps(
-                {
-                    "out": str(out),
-                    "table_digest": designed.table.digest,
-                    "passed": verification.passed,
-                    "left": list(left(flight.tracking)),
-                }
-            )
-        )
+        facts = {"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}
+        facts |= {"design": design_facts(designed.report), "verification": json.loads(verification_text(verification))}
+        facts |= {"left": list(left(flight.tracking)), **tracking_facts(flight.tracking)}
+        facts |= {"quality": quality_facts(flight_quality(flight.tracking, [])), "sizes": asdict(image.sizes)}
+        print(json.dumps(facts))
         return 0
     print(console.table(design_rows(designed.report), design_heading(designed.report)))
     print()

@@ -6,16 +6,18 @@ Exit status 1 when a check does not hold.
 """
 
 import argparse
+import json
 
 from controllers import loading
 from records.errors import VerificationFailed
 from records.files import write_atomic
 from records.log import save_log
 from records.verification import validation_text
+from sim.tracking import left
 from sim.wiring import wiring
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import validation_rows
-from twinlaw.pages.run.tracking import TRACKING_HEADING, left_sentence, tracking_rows
+from twinlaw.pages.run.tracking import TRACKING_HEADING, left_sentence, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board, validate_board
 from twinlaw.workflows.reading import load_bound
 
@@ -47,7 +49,8 @@ def run(chosen: argparse.Namespace) -> int:
     write_atomic(chosen.out / "validation.json", text)
     save_log(chosen.out / "validation.csv", flight.log)
     if chosen.json:
-        print(text)
+        flown = {"left": list(left(flight.tracking)), **tracking_facts(flight.tracking)}
+        print(json.dumps(json.loads(text) | flown))
         return 0
     print(console.table(validation_rows(validation)))
     print()

@@ -7,6 +7,7 @@ import pytest
 from identification.proof import bench as fit_bench
 from sim.bench import comparison, compiled_peers, peak
 from tests.angles import few_angles
+from tests.docs.json_page import is_as_documented
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb
 
@@ -60,6 +61,7 @@ def test_it_tells_a_person_and_a_program_ratios_errors_speeds_and_how_to_install
     assert main(["bench", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
     assert said["not_installed"] == list(compiled_peers.PEERS)
+    assert is_as_documented("bench", said)
     assert all(row["note"] for row in said["closed_loop"])
     processor = said["processor"]
     assert 500 < processor["operations"] < 1500

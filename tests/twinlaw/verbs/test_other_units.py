@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.docs.json_page import is_as_documented
 from tests.own_plants import HEATER, NO_AXIS, RATE_ONLY, TANKS, OwnPlant
 from tests.soak import sampled
 from twinlaw.command import main
@@ -153,6 +154,7 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
     said = json.loads(capsys.readouterr().out)
     found = json.loads((tmp_path / "b" / "verification.json").read_text())
     assert said["passed"]
+    assert is_as_documented("run", said)
     assert len(found["equality"]) == 4
     assert all(row["steps"] >= 100_000 and row["mismatches"] == 0 for row in found["equality"])
     header = (tmp_path / "b" / "generated" / "law.h").read_text()

@@ -24,6 +24,7 @@ from sim.manoeuvres import hop
 from sim.plants import MODELS
 from sim.tracking import tracking
 from tests.angles import few_angles
+from tests.docs.json_page import is_as_documented
 from tests.soak import SOAK
 from twinlaw.command import main
 from twinlaw.verbs import verify
@@ -250,6 +251,8 @@ def test_validate_checks_the_emulated_board(
     assert said["passed"] is True
     assert said["equality"]["mismatches"] == 0
     assert said["equality"]["steps"] >= 300
+    assert set(said["tracking"]) == {"psi_rad", "phi_rad"}
+    assert is_as_documented("validate", said)
     for name in ("validation.json", "validation.csv", "validation.toml"):
         (out / name).unlink()
 

@@ -16,6 +16,7 @@ from records.log import save_log
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 from tests.blind.test_score import answer, effect, sealed, truth, write
+from tests.docs.json_page import is_as_documented
 from tests.plants import bound, stated_table
 from tests.test_project import ROOT
 from twinlaw.command import main
@@ -90,6 +91,7 @@ def test_a_small_case_is_answered_once_for_each_value_and_kept(
     words = ["blind", "sensitivity", str(tmp_path / "cases"), str(out), "--workers", "1", "--constant", "BLIND_SHARE"]
     assert main([*words, "--factors", "0.001", "1.5", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
+    assert is_as_documented("blind sensitivity", told)
     assert {path.name for path in out.iterdir()} == {"unchanged", "BLIND_SHARE-x0.001", "BLIND_SHARE-x1.5"}
     by_factor = {entry["factor"]: entry for entry in told["changes"]}
     verdicts = {

@@ -12,6 +12,7 @@ from records.errors import BadInput
 from records.log import RunLog, load_log, save_log
 from sim.columns import log_columns
 from tests.diagnosis.arm import arm, arm_log
+from tests.docs.json_page import is_as_documented
 from tests.plants import PLANTS
 from twinlaw.command import main
 from twinlaw.pages.diagnose.splits import HEADING, agreement, markdown, rows
@@ -136,6 +137,7 @@ def test_two_logs_of_an_arm_with_a_dead_band_are_two_splits_that_are_diagnosed_o
     assert main([*command, "--json", *map(str, logs)]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told == json.loads((tmp_path / "out" / "splits.json").read_text())
+    assert is_as_documented("splits", told)
     assert [(entry["explained"], entry["held_out"]) for entry in told["splits"]] == [
         (["one"], ["two"]),
         (["two"], ["one"]),

@@ -1,0 +1,76 @@
+"""docs/json.md: a row for every verb that prints JSON, with the keys that it prints."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.docs.json_page import PAGE, ROWS, is_as_documented, keys
+from tests.docs.results import result
+from twinlaw.cli.completion import command_tree
+from twinlaw.command import build_parser, main
+from twinlaw.verbs import VERBS
+
+# What longer commands have printed is kept, without what changes from run to run.
+KEPT = {
+    "compare": "compared_velagic",
+    "design": "designed",
+    "diagnose": "each",
+    "envelope": "envelope",
+    "identify": "swept_references_free",
+    "verify": "verified",
+    "experiments": "coverage",
+    "sweep": "sweep_coverage",
+    "blind score": "blind_fresh_first",
+}
+
+
+def test_every_verb_that_prints_json_has_its_row() -> None:
+    below = (command for verb in command_tree(build_parser(tuple(VERBS))).commands for command in verb.all)
+    leaves = {entry.at for entry in below if not entry.commands}
+    assert set(ROWS) == {at.removeprefix("twinlaw ") for at in leaves} - {"completion"}
+
+
+@pytest.mark.parametrize("verb", KEPT)
+def test_what_a_longer_command_printed_is_what_its_row_says(verb: str) -> None:
+    assert set(result(KEPT[verb])) <= keys(verb)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A controller table, a log and a file to import."""
+    made = tmp_path_factory.mktemp("json")
+    assert main(["design", "--out", str(made)]) == 0
+    assert main(["simulate", "--out", str(made)]) == 0
+    return made
+
+
+@pytest.mark.parametrize(
+    ("verb", "words"),
+    [
+        ("design", []),
+        ("generate", ["--table", "FOLDER/controller.json"]),
+        ("build", ["--table", "FOLDER/controller.json"]),
+        ("simulate", ["--table", "FOLDER/controller.json"]),
+        ("trace", ["elevation_q_1_V_rad[2]", "--table", "FOLDER/controller.json"]),
+        ("import", ["FOLDER/simulation.csv"]),
+        ("new-plant", ["my_arm"]),
+        ("doctor", []),
+    ],
+)
+def test_a_verb_prints_the_keys_of_its_row(
+    verb: str, words: list[str], folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = {"trace": [], "doctor": [], "import": ["--out", str(tmp_path / "log.csv")]}.get(
+        verb, ["--out", str(tmp_path)]
+    )
+    capsys.readouterr()
+    assert main([verb, *(word.replace("FOLDER", str(folder)) for word in words), *out, "--json"]) == 0
+    assert is_as_documented(verb, json.loads(capsys.readouterr().out))
+
+
+def test_bad_input_is_the_object_that_the_page_says(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "--plant", str(tmp_path / "none.toml"), "--out", str(tmp_path), "--json"]) == 2
+    said = json.loads(capsys.readouterr().out)
+    assert set(said) == {"error", "what", "where", "got", "expected", "remedy"}
+    assert all(f"`{key}`" in PAGE for key in said)
