@@ -56,7 +56,7 @@ def rotor_unit(log: RunLog, name: str, bound: BoundPlant, limits: Mapping[str, t
         errors = {scale: _balance(log, speed / scale, rate(speed / scale, u, *bound.p)) for scale in (1.0, *SLOPES)}
         best = min(errors, key=lambda scale: errors[scale])
         if best != 1.0 and errors[best] * thresholds.CLEARLY_BETTER < errors[1.0]:
-            yield _slip(log, name, column, f"{column} is in {SLOPES[best]} a second or minute, by the rotor's equation")
+            yield _slip(log, name, column, f"{column} is in {SLOPES[best]} a second or minute, by its own equation")
 
 
 @cache

@@ -64,7 +64,7 @@ def parsed(name: str, text: str, of: Source) -> Node:
     try:
         return parse(text, of.known_names)
     except BadExpression as error:
-        expected = "an expression such as 'Psi*pi/180' or NAME.signals.values(:,2)"
+        expected = "an expression such as 'NAME*pi/180' or NAME.signals.values(:,2)"
         raise BadInput(f"column {name!r}", f"mapping {text!r}", str(error), expected, "mend it") from error
 
 

@@ -8,7 +8,7 @@ from twinlaw.pages.page import Row, Section, Table
 ROUNDING = 1e-9  # in a criterion's unit: limits are 0.1 and more, double precision leaves this of 0
 SAID = 3  # reasons that are named in the sentence
 BY_NAME = {criterion.name: criterion for criterion in CRITERIA}
-HEADING = ("looked at", "how many", "worst", "", "green up to", "amber up to", "colour")
+HEADING = ("looked at", "how many", "worst", "of", "green up to", "amber up to", "colour")
 
 
 def quality_sentence(quality: Quality) -> str:
