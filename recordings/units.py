@@ -78,6 +78,7 @@ UNITS = (
     ),
     Unit("rad/s", 1.0, (), ("rad_s", "radps", "rads")),
     Unit("rad/s", pi / 180.0, ("dps",), ("dps", "degps")),
+    Unit("rad/s", pi / 1.8e5, ("mdps",), ("mdps",)),
     Unit(
         "rad/s",
         pi / 30.0,
@@ -169,7 +170,7 @@ _BY_SUFFIX: Mapping[str, Unit] = {
 }
 _OVER = re.compile(r"(.+)(?:/|per|pro|par|por)([^/^\d]+)(?:\^?([12]))?")  # deg/s^2, deg/s/s, Grad pro Sekunde
 _ENDING_OVER = re.compile(r"(.+?)_(?:(?:per|pro)_)?([A-Za-z]+)([2]?)")  # deg_s, Grad_pro_s, mm_s2
-_TIMES_INVERSE = re.compile(r"(.+?)\*?([a-z]+)\^?-([12])")  # rad*s^-1
+_TIMES_INVERSE = re.compile(r"(.+?)\*?(ms|s|sec|min|h)\^?-([12])")  # rad*s^-1, and rad s-1 without its blank
 _SUPERSCRIPTS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "·": "*", "⋅": "*"})
 
 

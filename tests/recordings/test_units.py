@@ -43,6 +43,8 @@ def test_no_spelling_and_no_suffix_means_two_units() -> None:
         ("rad/s", "°/min", pi / 10800),
         ("rad/s", "degrees per second", pi / 180),
         ("rad/s", "rad·s⁻¹", 1.0),
+        ("rad/s", "rad s-1", 1.0),
+        ("rad/s", "mdps", pi / 180e3),
         ("rad/s", "ticks/ms", 2e3 * pi / 4096),
         ("rad/s", "upm", pi / 30),
         ("rad/s", "tr/min", pi / 30),
