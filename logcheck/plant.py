@@ -9,9 +9,9 @@ from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
 from logcheck.grid import are_whole, grid_findings, is_on, some
 from logcheck.motion import exchange_findings, motion_findings
-from logcheck.scale import fits_better
 from logcheck.standing import locked_findings, off_findings
-from logcheck.units import rate_unit, reference_unit, rotor_unit
+from logcheck.units.derived import rate_unit, reference_unit, rotor_unit
+from logcheck.units.scale import fits_better
 from records.errors import BadInput
 from records.log import RunLog
 from records.logs.clock import finer_unit

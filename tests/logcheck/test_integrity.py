@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from logcheck.integrity import Integrity, demand, examine
+from logcheck.units.scale import fits_better
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
 from sim.columns import log_columns
@@ -141,9 +142,12 @@ def test_degrees_within_the_stops_are_told_from_coarse_radians_by_how_the_plant_
     degrees = _read_in(small, column, TURN_STEP_RAD, 180.0 / np.pi)
     coarse_rad = TURN_STEP_RAD * 180.0 / np.pi
     assert 3.0 * coarse_rad < np.ptp(degrees.column(column)) < 2.5
+    assert fits_better(degrees, plant(), column, 180.0 / np.pi)
     assert [(found.kind, found.column) for found in _examined(degrees).refusals] == [("unit_slip", column)]
     for whole in (1.0, 2.0, 4.0):
-        assert not _examined(_read_in(replace(large, extra={}), column, whole * coarse_rad, 1.0)).refusals
+        coarse = _read_in(replace(large, extra={}), column, whole * coarse_rad, 1.0)
+        assert not fits_better(coarse, plant(), column, 180.0 / np.pi)
+        assert not _examined(coarse).refusals
 
 
 @pytest.mark.parametrize("step_rad", [0.05, 0.1, 0.2, 0.25, 0.5])

@@ -16,7 +16,7 @@ from logcheck.plant import plant_facts, plant_findings
 from logcheck.seams import seam_findings
 from logcheck.stamps import timing, timing_findings
 from logcheck.standing import locked_findings
-from logcheck.units import rate_unit, reference_unit
+from logcheck.units.derived import rate_unit, reference_unit
 from logcheck.values import excitations, saturations, value_findings
 from records.log import RunLog
 from sim.columns import log_columns
