@@ -43,6 +43,7 @@ def proposed(contents: Contents, columns: LogColumns, said: Mapping[str, str]) -
         chosen = dict(zip(needed, free, strict=True))  # a matrix or a table without a header: in the order of a run log
     else:
         chosen = _most_alike(needed, free)
+    chosen |= {column: f"{name}*FACTOR" for column, name in chosen.items() if _may_bear_a_unit(column, name)}
     return [*([_option("t_s", time)] if time else []), *(_option(name, chosen.get(name, "SIGNAL")) for name in needed)]
 
 
@@ -58,6 +59,11 @@ def _most_alike(needed: Sequence[str], free: Mapping[str, Signal]) -> dict[str, 
         if column not in chosen and len(fitting) == 1:
             chosen[column] = fitting[0]
     return {**{column: f"{name}*FACTOR" for column in needed for name in _in_another_unit(column, free)[:1]}, **chosen}
+
+
+def _may_bear_a_unit(column: str, name: str) -> bool:
+    """Whether a name ends in brackets with a text that is no known unit, `Winkel (Striche)`: it may be one, and a person knows which."""
+    return bool(unit_of(column)) and re.search(r"\s[({<][^\W\d][^(){}<>]*[)}>]$", name) is not None
 
 
 def _in_another_unit(column: str, free: Mapping[str, Signal]) -> list[str]:

@@ -198,3 +198,14 @@ def test_a_topic_or_label_that_ends_in_a_unit_is_converted_like_a_name() -> None
     for said in ({}, {"psi_rad": "/psi_deg.data", "phi_rad": "phi_mrad"}):
         log = log_of_contents(contents, "log", mapped(**said), CE150).log
         np.testing.assert_allclose(log.y, np.column_stack([RUN["psi_rad"], RUN["phi_rad"]]), atol=1e-12)
+
+
+def test_brackets_around_what_is_no_known_unit_are_proposed_with_a_factor_to_be_typed(tmp_path: Path) -> None:
+    """Truth: marks of a wheel are a unit that only its owner knows."""
+    log = tmp_path / "log.csv"
+    log.write_text("t_s;u_M_V;u_T_V;psi (marks);phi_rad\n" + "".join(f"{k / 100};1;2;{k};0.5\n" for k in range(60)))
+    with pytest.raises(BadInput) as caught:
+        imported_here(log, mapped())
+    assert "'psi_rad=psi (marks)*FACTOR'" in caught.value.remedy
+    done = imported_here(log, mapped(psi_rad="psi (marks)*0.01"))
+    np.testing.assert_allclose(done.log.column("psi_rad"), 0.01 * np.arange(60))
