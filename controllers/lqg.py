@@ -1,19 +1,20 @@
 """LQG of each loop: a Kalman filter of the output and its moves, and a regulator that moves the input by what that says.
 
     y, x <- y + l_0 (measured - y), x + l (measured - y)                                 the steady-state Kalman filter          (C.11)
-    v = k_0 (r - y) - k x,   u = held + v, limited,   v <- u - held,   held <- u                 the regulator                  (C.12)
-    x_i <- x_i + x_(i+1) - a_i x_1 + b_i v,   y <- y + x_1                               the sampled plant of n states          (C.13)
+    v = g (k_0 (r - y) - k x),   u = held + v, limited,   w <- (u - held) / g,   held <- u       the regulator                  (C.12)
+    x_i <- x_i + x_(i+1) - a_i x_1 + b_i w,   y <- y + x_1                               the sampled plant of n states          (C.13)
 
-x_1 is the output's move in a sample, x_2 .. x_n what will move it later; v is the input's. Written in moves (Kaminer, Pascoal,
+x_1 is the output's move in a sample, x_2 .. x_n what will move it later; v is the input's, w that in the output's unit.
+ Written in moves (Kaminer, Pascoal,
 Khargonekar and Coleman, Automatica 31, 1995: the D-implementation of scheduled controllers), the law knows no operating point: at rest x
 is 0 at any of them, and stays 0 while the coefficients, polynomials in the scheduling output, change. A rest has v = 0, so y = r: the
 moves are the integral action. As the filter is told the limited move, nothing winds up. So r is the reference as it comes: the regulator
 goes to it as fast as its weights say, and a filter before it would only be slower. The law begins at the operating point: `held` is the
-feed-forward there. What the coefficients are at one operating point stands in controllers/lqg_gains.py; each kind is fitted over the
-points by polynomials of the lowest degree that is within FIT.
+feed-forward there. What the coefficients are at one operating point stands in controllers/lqg_gains.py; each is fitted over the points by
+a polynomial of the lowest degree that is within FIT. Most are constants, as g bears what the plant's gain varies by.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, make_dataclass
 from functools import cache
 from typing import Any, TypeVar
@@ -26,12 +27,12 @@ from codegen.law_frame import LawNumbers, Sample, polynomial
 from controllers.equations.designing import Points, axis_table, largest_output, law_table
 from controllers.equations.equation_controller import EquationController
 from controllers.equations.frame import AxisNumbers, Decisions
-from controllers.equations.judging import demand_held_at_rest, demand_margins, demand_stable
-from controllers.lqg_gains import Speeds, gains_at, wished_speeds
-from controllers.lqg_loop import controller_at, coupled_poles, open_loop
+from controllers.equations.judging import demand_held_at_rest, demand_margins, demand_robust, demand_stable
+from controllers.lqg_gains import Gains, Speeds, gains_at, wished_speeds
+from controllers.lqg_loop import controller_at, coupled_poles, coupled_sensitivity, open_loop
+from controllers.pid_tuning import SENSITIVITIES
 from design.loop import plant_polynomials
 from design.schedule import fit, stored_fit
-from design.table import plain
 from records.errors import BadInput
 from records.law_table import LawTable
 from records.table import Polynomial
@@ -39,20 +40,24 @@ from records.table import Polynomial
 N = TypeVar("N")
 Array = NDArray[np.float64]
 
-FIT = 0.08  # of the largest value: every power costs cycles, and most coefficients hardly vary
-KINDS = ("a", "b", "k", "l")
-# Shares of the wished speed, tried in turn. quanser_aero's loops, whose inputs push both axes alike, hold each other from 0.5 on.
-SLOWER = (1.0, 0.7, 0.5, 0.35)
+FIT = 0.06  # of the largest coefficient of a kind: every power costs cycles, and most coefficients hardly vary
+KINDS = ("a", "b", "k", "l", "g", "inverse_g")
+# Shares of the wished speed, tried in turn until every loop, the others closed, is robust: |1/(1 + L)| within what a PID gets at most.
+# quanser_aero, whose inputs push both axes alike, needs a quarter; a zero to the right, as a drum's level has, a half.
+SLOWER = tuple(float(2.0 ** (-step / 4.0)) for step in range(13))
+SENSITIVITY = SENSITIVITIES[-1]
 
 
 @dataclass(frozen=True)
 class LqgGains:
-    """Polynomials of (C.11) to (C.13), n of `a` and `b` [rad/V], n + 1 of `k_V_rad` and `l`, and what neither y nor x exceeds."""
+    """Polynomials of (C.11) to (C.13), n of `a` and `b`, n + 1 of `k` and `l`, g and 1/g, and what neither y nor x exceeds."""
 
     a: tuple[Polynomial, ...]
     b: tuple[Polynomial, ...]
-    k_V_rad: tuple[Polynomial, ...]
+    k: tuple[Polynomial, ...]
     l: tuple[Polynomial, ...]  # noqa: E741  # the field's letter
+    g_V_rad: Polynomial
+    inverse_g_rad_V: Polynomial
     y_max_rad: float
 
 
@@ -99,7 +104,8 @@ class Lqg:
         def at(coefficients: Any) -> list[Any]:
             return [polynomial(entry, sample.schedule_rad, law.zero) for entry in coefficients]
 
-        a, b, k, l = at(gains.a), at(gains.b), at(gains.k_V_rad), at(gains.l)  # noqa: E741
+        a, b, k, l = at(gains.a), at(gains.b), at(gains.k), at(gains.l)  # noqa: E741
+        (g_V_rad,), (inverse_g_rad_V,) = at([gains.g_V_rad]), at([gains.inverse_g_rad_V])
         innovation_rad = sample.angle_rad - state.output_rad
         output_rad = state.output_rad + l[0] * innovation_rad
         moves_rad = [
@@ -107,14 +113,15 @@ class Lqg:
         ]
 
         held_V = arithmetic.saturate(state.held_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
-        change_V = k[0] * (state.reference_2_rad - output_rad)
+        change_rad = k[0] * (state.reference_2_rad - output_rad)
         for gain, move_rad in zip(k[1:], moves_rad, strict=True):
-            change_V = change_V - gain * move_rad
-        limited_V: Any = arithmetic.saturate(held_V + change_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
+            change_rad = change_rad - gain * move_rad
+        wanted_V = held_V + g_V_rad * change_rad
+        limited_V: Any = arithmetic.saturate(wanted_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
 
-        step_V, first_rad = limited_V - held_V, moves_rad[0]
+        step_rad, first_rad = inverse_g_rad_V * (limited_V - held_V), moves_rad[0]
         for index in range(self.order):
-            move_rad = moves_rad[index] - a[index] * first_rad + b[index] * step_V
+            move_rad = moves_rad[index] - a[index] * first_rad + b[index] * step_rad
             if index + 1 < self.order:
                 move_rad = move_rad + moves_rad[index + 1]
             moves_rad[index] = arithmetic.saturate(move_rad, -y_max_rad, y_max_rad, law.zero)
@@ -124,9 +131,9 @@ class Lqg:
 
 
 def design(points: Points) -> LawTable[LqgGains]:
-    """All loops from Riccati equations at each operating point, fitted over the schedule, at the first speed of SLOWER that they hold.
+    """All loops at each operating point, fitted over the schedule, at the first speed of SLOWER at which they are robust together.
 
-    Raises BadInput where even at the last one a loop falls below a margin of [design], or all together are unstable.
+    Raises BadInput naming what they do not hold at the last one.
     """
     for loop in points.settings.loops:
         demand_held_at_rest(points, loop.axis)
@@ -140,63 +147,87 @@ def design(points: Points) -> LawTable[LqgGains]:
                 raise
             continue
         axes = {axis: axis_table(points, axis, own, 0.0) for axis, own in gains.items()}
-        return law_table("lqg", points, axes, {axis: _origin(entry) for axis, entry in speeds.items()})
+        return law_table(
+            "lqg", points, axes, {axis: _origin(points, axis, entry, share) for axis, entry in speeds.items()}
+        )
     raise AssertionError
 
 
 def _all_gains(points: Points, speeds: Mapping[str, Speeds]) -> dict[str, LqgGains]:
-    values = {axis: _values(points, axis, entry) for axis, entry in speeds.items()}
-    order = max(len(entry["a"]) for entry in values.values())
-    degrees = {kind: max(_degree(points, entry[kind]) for entry in values.values()) for kind in KINDS}
-    return {axis: _gains(points, axis, entry, order, degrees) for axis, entry in values.items()}
+    found = {
+        axis: [gains_at(plant_polynomials(plant), entry) for plant in points.sampled(axis)]
+        for axis, entry in speeds.items()
+    }
+    order = max(len(entry[0].a) for entry in found.values())
+    values = {axis: _values(entry, order) for axis, entry in found.items()}
+    per_loop = [_degrees(points, values[axis], entry) for axis, entry in speeds.items()]
+    degrees = {kind: np.max([entry[kind] for entry in per_loop], axis=0) for kind in KINDS}
+    return {axis: _gains(points, axis, entry, degrees) for axis, entry in values.items()}
 
 
-def _values(points: Points, axis: str, speeds: Speeds) -> dict[str, Array]:
-    """Each kind of coefficient at the operating points, (coefficients, points)."""
-    found = [gains_at(plant_polynomials(plant), speeds) for plant in points.sampled(axis)]
-    return {kind: np.array([getattr(entry, kind) for entry in found]).T for kind in KINDS}
+def _values(found: Sequence[Gains], order: int) -> dict[str, Array]:
+    """Each kind of coefficient at the operating points, (coefficients, points); moves that a loop of fewer states lacks stay 0."""
+    g = np.array([[entry.g for entry in found]])
+    values = {"g": g, "inverse_g": 1.0 / g}
+    for kind, count in {"a": order, "b": order, "k": order + 1, "l": order + 1}.items():
+        rows = np.array([getattr(entry, kind) for entry in found]).T
+        values[kind] = np.vstack([rows, np.zeros((count - len(rows), len(found)))])
+    return values
 
 
-def _degree(points: Points, values: Array) -> int:
-    """The lowest degree that fits each row of values to FIT of its largest."""
+def _degrees(points: Points, values: Mapping[str, Array], speeds: Speeds) -> dict[str, list[int]]:
+    """The lowest degree of each coefficient with which it is within FIT of the largest of its kind.
+
+    Sizes are those that coefficients have in the units in which a move of x_i is one at alpha, or beta for the filter.
+    """
+    alpha, beta = (speed * points.settings.sample_period_s for speed in vars(speeds).values())
+    of_x = {"a": (1.0 / alpha, 1), "b": (1.0 / alpha, 1), "k": (alpha, 0), "l": (1.0 / beta, 0)}
+    degrees = {}
+    for kind, rows in values.items():
+        unit, first = of_x.get(kind, (1.0, 0))
+        sized = rows * np.power(unit, np.arange(first, first + len(rows)))[:, np.newaxis]
+        degrees[kind] = [_degree(points, row, FIT * float(np.max(np.abs(sized)))) for row in sized]
+    return degrees
+
+
+def _degree(points: Points, values: Array, tolerance: float) -> int:
     most = points.settings.coefficient_degree
     for degree in range(most):
-        errors = [np.max(np.abs(polyval(points.psi_rad, fit(points.psi_rad, row, degree)) - row)) for row in values]
-        if all(error <= FIT * np.max(np.abs(row)) for error, row in zip(errors, values, strict=True)):
+        if np.max(np.abs(polyval(points.psi_rad, fit(points.psi_rad, values, degree)) - values)) <= tolerance:
             return degree
     return most
 
 
-def _gains(points: Points, axis: str, values: Mapping[str, Array], order: int, degrees: Mapping[str, int]) -> LqgGains:
-    """The record of one loop; a loop of fewer states than `order` has moves that stay 0."""
-
-    def fitted(kind: str, count: int) -> tuple[Polynomial, ...]:
-        rows = [stored_fit(points.psi_rad, row, degrees[kind]) for row in values[kind]]
-        return (*rows, *[(0.0,) * (degrees[kind] + 1)] * (count - len(rows)))
-
-    return LqgGains(
-        fitted("a", order), fitted("b", order), fitted("k", order + 1), fitted("l", order + 1),
-        largest_output(points.settings.axis(axis)),
-    )  # fmt: skip
+def _gains(points: Points, axis: str, values: Mapping[str, Array], degrees: Mapping[str, Array]) -> LqgGains:
+    a, b, k, l, g, inverse_g = (  # noqa: E741
+        tuple(
+            stored_fit(points.psi_rad, row, int(degree))
+            for row, degree in zip(values[kind], degrees[kind], strict=True)
+        )
+        for kind in KINDS
+    )
+    return LqgGains(a, b, k, l, g[0], inverse_g[0], largest_output(points.settings.axis(axis)))
 
 
 def _judge(points: Points, gains: Mapping[str, LqgGains]) -> None:
-    """Raise BadInput naming operating point and margin that a loop does not hold, or where all of them together are unstable."""
-    sampled = {axis: points.sampled(axis) for axis in gains}
+    """Raise BadInput naming operating point and margin that a loop does not hold, alone or with all others closed."""
+    settings, sampled = points.settings, {axis: points.sampled(axis) for axis in gains}
     for index, (psi_rad, whole) in enumerate(zip(points.psi_rad.tolist(), points.whole(), strict=True)):
         controllers = {axis: controller_at(own, psi_rad) for axis, own in gains.items()}
         for axis, controller in controllers.items():
             plant = plant_polynomials(sampled[axis][index])
-            demand_margins(points.settings, points.settings.place(axis, psi_rad), open_loop(controller, plant))
+            demand_margins(settings, settings.place(axis, psi_rad), open_loop(controller, plant))
         together = coupled_poles(whole, tuple(controllers.values()))
-        demand_stable("slowest pole of all loops together", points.settings.place("all axes", psi_rad), together)
+        demand_stable("slowest pole of all loops together", settings.place("all axes", psi_rad), together)
+        found = coupled_sensitivity(whole, tuple(controllers.values()))
+        for axis, sensitivity in zip(controllers, found.tolist(), strict=True):
+            demand_robust(settings, settings.place(axis, psi_rad), sensitivity, SENSITIVITY)
 
 
-def _origin(speeds: Speeds) -> dict[str, Any]:
-    return {
-        "poles_rad_s": [[-speed, 0.0] for speed in plain(vars(speeds).values())],
-        "rule": "zero of the weighted error, geometric mean of the regulator's poles, of the filter's",
-    }
+def _origin(points: Points, axis: str, speeds: Speeds, share: float) -> dict[str, Any]:
+    wished = [[share * pole.real, share * pole.imag] for pole in points.settings.axis(axis).placed_rad_s]
+    rule = "the cheapest regulator and filter whose poles lie left of these, both multiples of the slowest wished pole"
+    return {"poles_rad_s": wished, **vars(speeds), "rule": rule}
 
 
 CONTROLLER = EquationController(
@@ -208,11 +239,11 @@ CONTROLLER = EquationController(
     ),
     note=(
         "is a Kalman filter of each loop's output and its moves, and an LQR that moves the input by what the filter says, both from "
-        "Riccati equations at the operating points and scheduled by polynomials. Written in moves it needs no operating "
-        "point, integrates, and, as the filter is told the limited voltage, does not wind up; so its references need no filter. Its "
-        "weights follow from the plant file's poles alone: the regulator's have 0.74 of their geometric mean, the filter's 4.5 times it, "
-        "and the error is weighted with its rate over 0.42 of it; these numbers were chosen on sixty spread plants of seed 101, which are "
-        "not those below. "
+        "the operating points and scheduled by polynomials. Written in moves it needs no operating "
+        "point, integrates, and, as the filter is told the limited voltage, does not wind up; so its references need no filter. Both "
+        "are the cheapest of a prescribed stability: poles to the right of -alpha go to their mirror images there, all others stay. alpha "
+        "is 1.85 times the slowest wished pole for the regulator and 8 times for the filter. Where |1/(1 + L)| of a loop, the others "
+        "closed, would pass 3, the regulators of all are slower, as far as an eighth. "
         "It begins with the voltage that holds the arm where it is."
     ),
     equations=lambda table: Lqg(len(table.axes[0].gains.a)),

@@ -1,5 +1,6 @@
 """The LQG's loops at one operating point, as its margins and its coupling with the other loops are judged."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -8,6 +9,8 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
+from design.analysis.coupled import POINTS
+from design.analysis.margins import LOWEST_RAD_S
 from design.discretise import SampledPlant
 from design.loop import OpenLoop, PlantPolynomials, Poles, plant_polynomials, to_rad_s
 from records.table import Polynomial
@@ -27,8 +30,16 @@ class Scheduled(Protocol):
         """(n,)"""
 
     @property
-    def k_V_rad(self) -> tuple[Polynomial, ...]:
+    def k(self) -> tuple[Polynomial, ...]:
         """(n + 1,)"""
+
+    @property
+    def g_V_rad(self) -> Polynomial:
+        """In the units of the loop."""
+
+    @property
+    def inverse_g_rad_V(self) -> Polynomial:
+        """Likewise."""
 
     @property
     def l(self) -> tuple[Polynomial, ...]:  # noqa: E743  # the field's letter
@@ -47,10 +58,11 @@ class LinearController:
 
 def controller_at(gains: Scheduled, schedule_rad: float) -> LinearController:
     """The law with its coefficients as float32 at schedule_rad [rad], in the state (y, x, held)."""
-    a, b, k, l = (  # noqa: E741
+    a, b, k, l, g = (  # noqa: E741
         np.array([polyval(schedule_rad, np.array(row, np.float32)) for row in rows])
-        for rows in (gains.a, gains.b, gains.k_V_rad, gains.l)
+        for rows in (gains.a, gains.b, gains.k, gains.l, (gains.g_V_rad, gains.inverse_g_rad_V))
     )
+    b, k = g[1] * b, g[0] * k
     order = len(a)
     kept = np.eye(order + 1)
     kept[:, 0] -= l  # (C.11) without the measurement
@@ -69,6 +81,22 @@ def open_loop(controller: LinearController, plant: PlantPolynomials) -> OpenLoop
     """L of the loop opened at the plant's input."""
     found = plant_polynomials(SampledPlant(controller.N, controller.B[:, np.newaxis], controller.C[np.newaxis], 1.0))
     return OpenLoop(plant.b, plant.a, -(found.b + controller.D * found.a), found.a, plant.sample_period_s)
+
+
+def coupled_sensitivity(plant: SampledPlant, controllers: Sequence[LinearController]) -> Array:
+    """The largest |1/(1 + L)| of each loop (loops,), opened at its input with all others closed; controller i takes output i to input i."""
+    omega_rad_s = np.geomspace(LOWEST_RAD_S, math.pi / plant.sample_period_s, POINTS)
+    gamma = np.expm1(1j * omega_rad_s * plant.sample_period_s)
+    G = _response(gamma, plant.N, plant.B, plant.C)
+    K = np.stack([_response(gamma, c.N, c.B[:, np.newaxis], c.C[np.newaxis])[:, 0, 0] + c.D for c in controllers], -1)
+    S = np.linalg.inv(np.eye(len(controllers)) - K[:, :, np.newaxis] * G)
+    return np.asarray(np.max(np.abs(np.diagonal(S, axis1=1, axis2=2)), axis=0))
+
+
+def _response(gamma: NDArray[np.complex128], N: Array, B: Array, C: Array) -> NDArray[np.complex128]:
+    """C (gamma I - N)^-1 B at each gamma: (frequencies, outputs, inputs)."""
+    states = gamma[:, np.newaxis, np.newaxis] * np.eye(len(N)) - N
+    return np.asarray(C @ np.linalg.solve(states, np.broadcast_to(B, (len(gamma), *B.shape))))
 
 
 def coupled_poles(plant: SampledPlant, controllers: Sequence[LinearController]) -> Poles:

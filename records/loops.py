@@ -101,7 +101,7 @@ class Loop:
     def own(self, name: str) -> str:
         """A name that ends in _rad, _V or both in this loop's units: reference_min_rad is reference_min_m, q_V_rad q_A_m."""
         output, input = (f"_{unit}" if unit else "" for unit in (self.output_unit, self.input_unit))
-        for ending, unit in (("_V_rad", input + output), ("_rad", output), ("_V", input)):
+        for ending, unit in (("_V_rad", input + output), ("_rad_V", output + input), ("_rad", output), ("_V", input)):
             if name.endswith(ending):
                 return name.removesuffix(ending) + unit
         return name

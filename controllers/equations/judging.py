@@ -39,6 +39,14 @@ def demand_held_at_rest(points: Points, axis: str) -> None:
             raise BadInput("loop", points.settings.place(axis, psi_rad), got, expected, remedy)
 
 
+def demand_robust(settings: DesignSettings, where: str, sensitivity: float, limit: float) -> None:
+    """Raise BadInput where a loop's max |1/(1 + L)|, the other loops closed, is above `limit` or the margin of [design]."""
+    limit = min(limit, settings.margins.max_sensitivity)
+    if not sensitivity <= limit:
+        what = "coupled margin, sensitivity max|1/(1 + L)| with the other loops closed"
+        _refuse(what, where, f"{sensitivity:.4g}", f"at most {limit:.4g}")
+
+
 def demand_stable(what: str, where: str, poles: Poles) -> None:
     """Raise BadInput where a pole [rad/s] is not to the left of 0."""
     pole_rad_s = slowest(poles)

@@ -99,5 +99,7 @@ def _at_rest(feedforward: str, table: LawTable[Any]) -> str:
 
 
 def _shape(value: Any) -> str:
-    """The C dimensions of a gain: "" for a number, "[4][3]" for a tuple of tuples."""
-    return f"[{len(value)}]{_shape(value[0])}" if isinstance(value, tuple) and value else ""
+    """The C dimensions of a gain: "" for a number, "[4][3]" for a tuple of tuples, the longest of which has 3."""
+    if not (isinstance(value, tuple) and value):
+        return ""
+    return f"[{len(value)}]{max(map(_shape, value), key=lambda inner: (len(inner), inner))}"
