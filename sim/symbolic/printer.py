@@ -5,7 +5,10 @@ from typing import Any
 import sympy
 from sympy.printing.c import C99CodePrinter
 
-_FUNCTIONS = ("exp", "log", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "floor", "ceiling")
+_FUNCTIONS = (
+    "exp", "log", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "erf", "erfc", "floor",
+    "ceiling",
+)  # fmt: skip
 
 
 class LanePrinter(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
@@ -80,10 +83,19 @@ class LanePrinter(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
             raise NotImplementedError(
                 f"the kernel's C has no function {name!r}; add it to sim/kernel/c/lane.h and sim/symbolic/printer.py"
             )
-        return f"lane_{'ceil' if name == 'ceiling' else name}({self._print(expr.args[0])})"
+        arguments = ", ".join(self._print(argument) for argument in expr.args)
+        return f"lane_{'ceil' if name == 'ceiling' else name}({arguments})"
 
-    _print_exp = _print_log = _print_tan = _print_asin = _print_acos = _print_atan = _print_Function
-    _print_sinh = _print_cosh = _print_tanh = _print_floor = _print_ceiling = _print_Function
+    # SymPy's own texts of these are libm's functions, which take one number and not those of runs side by side.
+    _print_exp = _print_log = _print_tan = _print_asin = _print_acos = _print_atan = _print_atan2 = _print_Function
+    _print_sinh = _print_cosh = _print_tanh = _print_asinh = _print_acosh = _print_atanh = _print_Function
+    _print_erf = _print_erfc = _print_floor = _print_ceiling = _print_Function
+    _print_gamma = _print_loggamma = _print_hypot = _print_fma = _print_Cbrt = _print_Sqrt = _print_Function
+    _print_exp2 = _print_expm1 = _print_log10 = _print_log2 = _print_log1p = _print_Function
+
+    def _print_Mod(self, expr: Any) -> str:
+        number, period = expr.args
+        return self._print(number - period * sympy.floor(number / period))
 
     def _print_Piecewise(self, expr: Any) -> str:
         *cases, (last, condition) = expr.args

@@ -19,6 +19,7 @@ from tests.soak import sampled
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
 
 NOWHERE = [0.0, 0.0]  # no quantisation
+S, V = sympy.symbols("S V", real=True)
 
 
 def excited(bound, seconds=1.0, seed=0):
@@ -192,6 +193,29 @@ def test_a_model_with_every_kind_of_expression_compiles_to_what_it_says(mechanis
         x = simulate(bound, [0.25, 0.25 + h], x0, np.zeros((2, 1)), resolution=[0.0]).x
         expected = float(force.subs({s: x0[0], v: x0[1], TIME: 0.25}).evalf()) / 2.0
         assert (x[1, 1] - x[0, 1]) / h == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        sympy.atan2(V, 1 + S), sympy.Mod(3 * S + V, sympy.Rational(2, 5)), sympy.asinh(V), sympy.acosh(2 + S), sympy.atanh(S / 2),
+        sympy.erf(S), sympy.erfc(V), sympy.ceiling(3 * V), sympy.sinh(S) * sympy.cosh(V), sympy.tan(S), sympy.asin(S / 2),
+    ],
+    ids=str,
+)  # fmt: skip
+def test_what_a_file_may_use_runs_side_by_side_as_alone(mechanism, function):
+    # Truth: SymPy's own number for one run, to 1e-5; the same bits for sixteen at once.
+    plain = mechanism()
+    s, v = plain.model.states
+    force = function.subs({S: s, V: v})
+    axis = replace(plain.model.axes[0], torque=force, coulomb=sympy.Integer(0))
+    bound = replace(plain, model=replace(plain.model, axes=(axis,)))
+    t_s, x0, u = [0.0, 1e-7], [0.3, 0.5], np.zeros((2, 1))
+    alone = simulate(bound, t_s, x0, u, resolution=[0.0]).x
+    side_by_side = simulate(bound, t_s, x0, u, p=np.tile(bound.p, (16, 1)), resolution=[0.0]).x
+    expected = float(force.subs({s: x0[0], v: x0[1]}).evalf()) / 2.0
+    assert (alone[1, 1] - alone[0, 1]) / 1e-7 == pytest.approx(expected, rel=1e-5)
+    assert np.array_equal(side_by_side, np.tile(alone, (16, 1, 1)))
 
 
 def test_a_held_axis_may_have_other_friction_up_than_down(mechanism):

@@ -90,6 +90,11 @@ LANEWISE(atan)
 LANEWISE(sinh)
 LANEWISE(cosh)
 LANEWISE(tanh)
+LANEWISE(asinh)
+LANEWISE(acosh)
+LANEWISE(atanh)
+LANEWISE(erf)
+LANEWISE(erfc)
 LANEWISE(floor)
 LANEWISE(ceil)
 LANEWISE(sqrt)
@@ -100,6 +105,13 @@ static inline num lane_pow(num a, num exponent)
     for (int lane = 0; lane < LANES; lane++)
         lane_set(&a, lane, pow(lane_get(a, lane), lane_get(exponent, lane)));
     return a;
+}
+
+static inline num lane_atan2(num y, num x)
+{
+    for (int lane = 0; lane < LANES; lane++)
+        lane_set(&y, lane, atan2(lane_get(y, lane), lane_get(x, lane)));
+    return y;
 }
 
 #endif

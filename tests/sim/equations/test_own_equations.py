@@ -55,6 +55,7 @@ SLIPS = {
     "a rate of an axis' velocity": ("rates={theta: omega}", "rates={theta: omega, omega: u}", "its axis alone"),
     "an output of an input": ('outputs={"theta_rad": theta}', 'outputs={"theta_rad": theta + u}', "take it out"),
     "a function that no C has": ("rates={theta: omega}", "rates={theta: sympy.zeta(omega)}", "write it with these"),
+    "a function whose slope no C has": ("rates={theta: omega}", "rates={theta: sympy.gamma(2 + omega)}", "write it with these"),
     "an axis of another velocity": ('Axis("arm", theta, omega', 'Axis("arm", theta, u', "a state: "),
     "a limit that moves": ("input_limits={u: (-10, 10)}", "input_limits={u: (-10, theta)}", "limit of u_V"),
     "a letter that no C has": ('symbol("omega_rad_s")', 'symbol("ω_rad_s")', "expected letters a to z, digits and _"),
