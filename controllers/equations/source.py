@@ -38,6 +38,7 @@ def generate(table: LawTable[Any], equations: AxisEquations, template: str) -> M
         "region": region_text(table),
         "rest": {axis.name: _at_rest(axis.feedforward, table) for axis in axes},
         "degrees": sorted(degrees - {0}),
+        "is_scheduled": any(len(entry) > 1 for entry in polynomials),
         "at": _values(gains),
         "gain_fields": [(field.name, _shape(getattr(gains, field.name))) for field in fields(gains)],
         **test_context(table, self_test(table, EquationTwin(equations, table))),

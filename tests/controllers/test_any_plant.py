@@ -24,7 +24,7 @@ from rig.programming.image import build_firmware
 from sim.bind import BoundPlant, bind
 from sim.tracking import left
 from tests.other_plants import plant_file
-from tests.own_plants import OwnPlant
+from tests.own_plants import PLAIN, OwnPlant
 from tests.soak import SOAK
 from twinlaw.workflows.chain.flying import fly_double, fly_host
 from twinlaw.workflows.new_plant import plant_texts
@@ -156,6 +156,31 @@ def test_coupled_loops_are_slowed_down_until_they_hold_together() -> None:
             if is_slowed
             else regulator_rad_s == pytest.approx(wished_rad_s, rel=1e-6)
         )
+
+
+SAME_EVERYWHERE = """
+[design]
+schedule = "theta_rad"
+theta_min_rad = -0.5
+theta_max_rad = 0.5
+operating_points = 5
+feedforward_degree = {feedforward_degree}
+[design.arm]
+poles_rad_s = [-3, -4, -8, -10]
+"""
+
+
+@pytest.mark.parametrize("feedforward_degree", [0, 2])
+def test_a_schedule_that_changes_nothing_is_no_obstacle(feedforward_degree: int, tmp_path: Path) -> None:
+    # Truth: a wheel is the same at every angle, so every coefficient of its law is a constant.
+    level = OwnPlant({**PLAIN.parameters, "G": (0.0, 0.0, "N m")}, PLAIN.sensors, PLAIN.body)
+    path = level.write(tmp_path, "level")
+    path.write_text(path.read_text() + SAME_EVERYWHERE.format(feedforward_degree=feedforward_degree))
+    wheel = bind(load_plant(path))
+    table = CONTROLLERS["lqg"].design(wheel, read_settings(wheel))
+    assert all(len(row) == 1 for row in (*table.axes[0].gains.k, table.axes[0].gains.g_V_rad))
+    host = HostLaw(CONTROLLERS["lqg"].generate(table), loops=table.loops)
+    assert host.self_test() == 0
 
 
 def test_loops_that_push_one_another_stay_with_their_references_on_spread_plants() -> None:
