@@ -26,7 +26,7 @@ from design.transfer import TransferFunction, transfer_function
 from records.errors import BadInput
 from records.loops import Loop
 from sim.bind import BoundPlant
-from sim.equilibrium import OperatingPoint, equilibrium, rest_with
+from sim.equilibrium import OperatingPoint, rest_with
 from sim.wiring import wiring
 
 Array = NDArray[np.float64]
@@ -61,10 +61,9 @@ def rest(bound: BoundPlant, settings: DesignSettings, psi_rad: float) -> Operati
     values = {axis.axis: psi_rad if axis.axis == scheduling else rests_at(axis) for axis in settings.axes}
     if has_position:
         values = {name: value for name, value in values.items() if name == scheduling or value != 0.0}
-        if not values:
-            return equilibrium(bound)
     loops = tuple(loop for loop in settings.loops if loop.axis in values)
-    return rest_with(bound, wiring(bound, loops).outputs, [values[loop.axis] for loop in loops])
+    places, driven = wiring(bound, loops).outputs, wiring(bound, settings.loops).inputs
+    return rest_with(bound, places, [values[loop.axis] for loop in loops], driven)
 
 
 def _rests_at(axis: AxisSettings) -> float:

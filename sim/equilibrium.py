@@ -43,15 +43,19 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     that act on the equations are part of them, as they are at time 0; what acts on the way of a signal does not move a rest point.
     Raises BadInput naming the angle when it lies beyond a stop or needs an input beyond its limits.
     """
+    return _at_positions(bound, positions_rad, _all_inputs(bound))
+
+
+def _at_positions(bound: BoundPlant, positions_rad: Sequence[float], driven: Sequence[int]) -> OperatingPoint:
+    """The same with the `driven` inputs alone, all others at their least effort."""
     model = bound.model
     arms = [axis for axis in model.axes if axis.position is not None]
     positions = dict(zip((axis.position for axis in arms), positions_rad, strict=False))
     for axis in arms:
         _check_stops(bound, axis, positions.get(axis.position, 0.0))
     x = np.array([positions.get(state, 0.0) for state in model.states])
-    commands = np.array([bound.commands(variable) for variable in model.inputs]).reshape(-1, 2)
-    starts = (commands @ np.array([1.0 - share, share]) for share in STARTS)
-    found = next(filter(None, (_solve(bound, *_begin(bound, x, u, positions_rad)) for u in starts)), None)
+    starts = _starts(bound, driven)
+    found = next(filter(None, (_solve(bound, *_begin(bound, x, u, positions_rad), driven) for u in starts)), None)
     if found is None:
         raise NoRestPoint(
             "equilibrium",
@@ -65,29 +69,53 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     return OperatingPoint(positions_rad[0] if positions_rad else 0.0, x0, u0)
 
 
-def rest_with(bound: BoundPlant, places: Sequence[int], values: Sequence[float]) -> OperatingPoint:
+def rest_with(
+    bound: BoundPlant, places: Sequence[int], values: Sequence[float], driven: Sequence[int] | None = None
+) -> OperatingPoint:
     """The rest point with the outputs at `places` at these values: of axes with a position by that, all others at 0, or where that is
     no rest point (a pulley behind a belt) wherever they come to rest; and of a plant without one, a tank or a coil, by what it measures.
 
-    Raises BadInput where there is none, or it needs an input beyond its limits.
+    Where the `driven` inputs can hold it alone, all others are at their least effort, else all hold it together. Raises BadInput where
+    there is none, or it needs an input beyond its limits.
     """
+    if driven is not None and len(driven) < len(bound.model.inputs):
+        with suppress(NoRestPoint):
+            return _rest_with(bound, places, values, driven)
+    return _rest_with(bound, places, values, _all_inputs(bound))
+
+
+def _rest_with(
+    bound: BoundPlant, places: Sequence[int], values: Sequence[float], driven: Sequence[int]
+) -> OperatingPoint:
     wanted = dict(zip(places, values, strict=True))
     outputs = list(bound.model.outputs.values())
     at = {outputs[place]: value for place, value in wanted.items()}
     arms = [axis for axis in bound.model.axes if axis.position is not None]
     if not arms:
-        return _measured(bound, wanted)
+        return _measured(bound, wanted, driven)
     try:
-        point = equilibrium(bound, *(at.get(axis.position, 0.0) for axis in arms))
+        point = _at_positions(bound, [at.get(axis.position, 0.0) for axis in arms], driven)
     except NoRestPoint:
         if all(axis.position in at for axis in arms):
             raise
         with suppress(BadInput):
-            return _within_stops(bound, arms, _measured(bound, wanted))
+            return _within_stops(bound, arms, _measured(bound, wanted, driven))
         raise
     if set(at) <= {axis.position for axis in arms} or _measures(bound, point, wanted):
         return point
-    return _within_stops(bound, arms, _measured(bound, wanted))
+    return _within_stops(bound, arms, _measured(bound, wanted, driven))
+
+
+def _all_inputs(bound: BoundPlant) -> range:
+    return range(len(bound.model.inputs))
+
+
+def _starts(bound: BoundPlant, driven: Sequence[int]) -> list[Array]:
+    """Inputs to begin from: the driven ones within their range, all others at their least effort."""
+    commands = np.array([bound.commands(variable) for variable in bound.model.inputs]).reshape(-1, 2)
+    least = np.clip(0.0, commands[:, 0], commands[:, 1])
+    is_driven = np.isin(np.arange(len(commands)), driven)
+    return [np.where(is_driven, commands @ np.array([1.0 - share, share]), least) for share in STARTS]
 
 
 def _measures(bound: BoundPlant, point: OperatingPoint, wanted: Mapping[int, float]) -> bool:
@@ -105,26 +133,25 @@ def _within_stops(bound: BoundPlant, arms: Sequence[Axis], point: OperatingPoint
     return replace(point, psi_rad=at[arms[0].name])
 
 
-def _measured(bound: BoundPlant, wanted: Mapping[int, float]) -> OperatingPoint:
+def _measured(bound: BoundPlant, wanted: Mapping[int, float], driven: Sequence[int]) -> OperatingPoint:
     names = list(bound.model.outputs)
     told = ", ".join(said(names[place], value) for place, value in wanted.items())
-    commands = np.array([bound.commands(variable) for variable in bound.model.inputs]).reshape(-1, 2)
-    starts = [commands @ np.array([1.0 - share, share]) for share in STARTS]
-    tries = [*_nominal(bound, wanted), *((x, u) for x in _filled(bound, wanted) for u in starts)]
-    found = next(filter(None, (_solve_measured(bound, wanted, x.copy(), u) for x, u in tries)), None)
+    starts = _starts(bound, driven)
+    tries = [*_nominal(bound, wanted, driven), *((x, u) for x in _filled(bound, wanted) for u in starts)]
+    found = next(filter(None, (_solve_measured(bound, wanted, x.copy(), u, driven) for x, u in tries)), None)
     where = f"plant {bound.plant.name!r} at {told}"
     if found is None:
         remedy = "check the parameters, and the references' range in [design]"
-        raise BadInput("equilibrium", where, "no solution of f(x, u) = 0", "a rest point that measures so", remedy)
+        raise NoRestPoint("equilibrium", where, "no solution of f(x, u) = 0", "a rest point that measures so", remedy)
     _check_inputs(bound, found[1], where)
     return OperatingPoint(0.0, *found)
 
 
-def _nominal(bound: BoundPlant, wanted: Mapping[int, float]) -> Iterator[tuple[Array, Array]]:
+def _nominal(bound: BoundPlant, wanted: Mapping[int, float], driven: Sequence[int]) -> Iterator[tuple[Array, Array]]:
     """With effects, where the nominal plant rests, as `_begin` does."""
     if bound.effects:
         with suppress(BadInput):
-            nominal = _measured(without_effects(bound), wanted)
+            nominal = _measured(without_effects(bound), wanted, driven)
             yield start_state(bound, nominal.x0), nominal.u0
 
 
@@ -138,25 +165,34 @@ def _filled(bound: BoundPlant, wanted: Mapping[int, float]) -> Iterator[Array]:
         yield np.array([value * (1.0 + share / (1.0 + index)) for index, value in enumerate(values)])
 
 
-def _solve_measured(bound: BoundPlant, wanted: Mapping[int, float], x: Array, u: Array) -> tuple[Array, Array] | None:
-    """No rate of any state and the wanted outputs; None where that is not found."""
+def _solve_measured(
+    bound: BoundPlant, wanted: Mapping[int, float], x: Array, u: Array, driven: Sequence[int]
+) -> tuple[Array, Array] | None:
+    """No rate of any state and the wanted outputs, by the driven inputs; None where that is not found."""
     model, equations = bound.model, reference(bound.model)
     places, values = list(wanted), np.array(list(wanted.values()))
-    still, states = np.zeros(len(model.axes)), len(x)
+    still, states, own = np.zeros(len(model.axes)), len(x), list(driven)
 
     def at(unknowns: Array) -> tuple[Array, Array]:
-        here = (0.0, unknowns[:states], unknowns[states:], bound.p, still)
-        by_input = np.zeros((len(places), len(u)))
-        slopes = np.block([[equations.A(*here), equations.B(*here)], [equations.C(*here)[places], by_input]])
+        here = (0.0, unknowns[:states], _with(u, own, unknowns[states:]), bound.p, still)
+        by_input = np.zeros((len(places), len(own)))
+        slopes = np.block([[equations.A(*here), equations.B(*here)[:, own]], [equations.C(*here)[places], by_input]])
         return np.concatenate([equations.rates(*here), equations.outputs(*here)[places] - values]), slopes
 
-    found = _newton(np.concatenate([x, u]), at, _least_step)
+    found = _newton(np.concatenate([x, u[own]]), at, _least_step)
     if found is None or not np.max(np.abs(found[1])) <= RATE_TOLERANCE * max(1.0, np.max(np.abs(values))):
         return None
-    return found[0][:states], found[0][states:]
+    return found[0][:states], _with(u, own, found[0][states:])
 
 
-def _begin(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ...]) -> tuple[Array, Array]:
+def _with(u: Array, places: list[int], values: Array) -> Array:
+    """The inputs with these in their places."""
+    changed = u.copy()
+    changed[places] = values
+    return changed
+
+
+def _begin(bound: BoundPlant, x: Array, u: Array, positions_rad: Sequence[float]) -> tuple[Array, Array]:
     """Where to begin: with effects, where the nominal plant rests, as a dead band is flat and a sagging supply has two answers."""
     if not bound.effects:
         return x, u
@@ -167,7 +203,7 @@ def _begin(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ..
     return start_state(bound, nominal.x0), nominal.u0
 
 
-def _solve(bound: BoundPlant, x: Array, u: Array) -> tuple[Array, Array] | None:
+def _solve(bound: BoundPlant, x: Array, u: Array, driven: Sequence[int]) -> tuple[Array, Array] | None:
     """The rest of states and inputs from the middle of the inputs' range: thrust and damping are convex, so Newton needs no damping.
 
     A state whose rate is 0 wherever the axes rest (a bent cable) stays where it starts. None where there is no rest point.
@@ -177,19 +213,17 @@ def _solve(bound: BoundPlant, x: Array, u: Array) -> tuple[Array, Array] | None:
     held = {variable for axis in arms for variable in (axis.position, axis.velocity)}
     free = [index for index, state in enumerate(model.states) if state not in held]
     rows = [*free, *(model.states.index(axis.velocity) for axis in arms)]
-    equations, signs = reference(model), np.zeros(len(model.axes))
+    equations, signs, own = reference(model), np.zeros(len(model.axes)), list(driven)
 
     def rest(unknowns: Array) -> tuple[Array, Array]:
-        states = x.copy()
-        states[free] = unknowns[: len(free)]
-        return states, unknowns[len(free) :]
+        return _with(x, free, unknowns[: len(free)]), _with(u, own, unknowns[len(free) :])
 
     def at(unknowns: Array) -> tuple[Array, Array]:
         here = (0.0, *rest(unknowns), bound.p, signs)
-        slopes = np.hstack([equations.A(*here)[np.ix_(rows, free)], equations.B(*here)[rows]])
+        slopes = np.hstack([equations.A(*here)[np.ix_(rows, free)], equations.B(*here)[np.ix_(rows, own)]])
         return equations.rates(*here)[rows], slopes
 
-    found = _newton(np.concatenate([x[free], u]), at, _newton_step)
+    found = _newton(np.concatenate([x[free], u[own]]), at, _newton_step)
     return None if found is None or not np.max(np.abs(found[1])) <= RATE_TOLERANCE else rest(found[0])
 
 
@@ -253,7 +287,7 @@ def _check_inputs(bound: BoundPlant, u0: Array, where: str) -> None:
             )
 
 
-def _place(bound: BoundPlant, positions_rad: tuple[float, ...]) -> str:
+def _place(bound: BoundPlant, positions_rad: Sequence[float]) -> str:
     arms = [axis for axis in bound.model.axes if axis.position is not None]
     angles = ", ".join(map(_told, arms, positions_rad or [0.0] * len(arms)))
     return f"plant {bound.plant.name!r} at {angles}"

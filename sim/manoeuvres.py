@@ -78,7 +78,7 @@ def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
     """
     wires = wiring(bound, table.loops)
     middle_rad = [0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes]
-    point = rest_with(bound, wires.outputs, middle_rad)
+    point = rest_with(bound, wires.outputs, middle_rad, wires.inputs)
     legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point.x0)]
     at_s = 0.0
     for place, axis, centre_rad, loop in zip(wires.outputs, table.axes, middle_rad, table.loops, strict=True):

@@ -95,7 +95,7 @@ class LanePrinter(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
 
     def _print_Mod(self, expr: Any) -> str:
         number, period = expr.args
-        return self._print(number - period * sympy.floor(number / period))
+        return str(self._print(number - period * sympy.floor(number / period)))
 
     def _print_Piecewise(self, expr: Any) -> str:
         *cases, (last, condition) = expr.args

@@ -8,7 +8,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.equilibrium import equilibrium, rest_with
 from sim.kernel.reference import reference
-from tests.own_plants import FOUR_TANKS, HANGING, HEATER, TANKS
+from tests.own_plants import FOUR_TANKS, HANGING, HEATER, TANKS, OwnPlant
 
 U_M0_V = {
     -45: 4.653,
@@ -23,6 +23,22 @@ U_M0_V = {
     40: 4.859,
 }
 RATES = 1e-11  # of what is left of dx/dt, where single terms reach 2000 rad/s^2
+
+TWO_ON_ONE = OwnPlant(
+    {"C": (20.0, 2.0, "J K^-1"), "G": (0.6, 0.06, "W K^-1")},
+    {"T_K": 0.01},
+    """
+T, large, small = symbol("T_K"), symbol("large_W"), symbol("small_W")
+return Model(
+    name="NAME", states=(T,), inputs=(large, small), outputs={"T_K": T}, parameters=PARAMETERS,
+    rates={T: (large + small - p["G"] * T) / p["C"]}, axes=(), input_limits={large: (0, 60), small: (0, 10)},
+    places=Places(
+        inputs={"oven": InputPlace(large, "W", 60.0), "lamp": InputPlace(small, "W", 10.0)},
+        sensors={"probe": SensorPlace("T_K", "K", 50.0)},
+    ),
+)
+""",
+)
 
 
 @pytest.mark.parametrize("psi_deg", U_M0_V)
@@ -115,3 +131,12 @@ def test_of_more_positions_than_inputs_the_wanted_ones_are_held_and_others_find_
     assert point.psi_rad == point.x0[0]
     with pytest.raises(BadInput, match="whether its inputs can hold it there"):
         rest_with(hanging, [0, 1], [0.0, 0.3])
+
+
+def test_inputs_that_are_not_driven_stay_at_their_least_effort_where_the_others_hold_it(tmp_path):
+    """Truth by hand: G T = 6 W hold 10 K, which either heater does alone; 12 W hold 20 K, of which one gives 10 at most. To 1e-9."""
+    bound = bind(load_plant(TWO_ON_ONE.write(tmp_path, "two_on_one")))
+    np.testing.assert_allclose(rest_with(bound, [0], [10.0], [1]).u0, [0.0, 6.0], atol=1e-9)
+    np.testing.assert_allclose(rest_with(bound, [0], [10.0], [0]).u0, [6.0, 0.0], atol=1e-9)
+    with pytest.raises(BadInput, match=r"input small_W: got 12 W needed to rest there, expected 0 to 10 W"):
+        rest_with(bound, [0], [20.0], [1])

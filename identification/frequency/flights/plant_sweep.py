@@ -74,7 +74,7 @@ def closed_loop_sweeps(
     rest = np.array([0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes])
     rest[0] = rest[0] if rest_rad is None else rest_rad
     wires = wiring(bound, table.loops)
-    point = rest_with(bound, wires.outputs, rest.tolist())
+    point = rest_with(bound, wires.outputs, rest.tolist(), wires.inputs)
     found = {}
     for place, loop in enumerate(table.loops):
         swept = np.zeros((t_s.size, len(rest)))
