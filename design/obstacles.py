@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 # Of the largest gamma of a pole: a zero nearer 0 is one at rest, whose gamma rounding leaves at 1e-10 of that or below; the slowest motion
 # of a rig that is faster than 50 ms samples lies at 1e-4 and above. Roots nearer the unit circle are not told apart from it.
 AT_REST = 1e-7
+SHARED = 1e-7  # likewise, of a zero from a pole: the difference of equal parts leaves less, parts 1 % apart leave 1e-4
 FASTEST = 1e-12  # |z| of a pole that has died away within one sample
 
 
@@ -27,6 +28,12 @@ def advice(plant: PlantPolynomials, integrates: bool) -> str:
         return (
             "at rest this input does not move that output, so nothing holds it at a value: "
             "measure what it can hold, or make one output of several"
+        )
+    hidden = poles[[bool(np.any(np.abs(zeros - pole) < SHARED * np.max(np.abs(poles)))) for pole in poles]]
+    if len(hidden):
+        return (
+            f"its motion at {_said(hidden, plant.sample_period_s)} has a pole and a zero in one place, so this input does not move it, or "
+            "that output does not show it: measure or command another, or write it so that the motion is not among the states"
         )
     between = _odd_stretch(zeros, poles)
     if between:

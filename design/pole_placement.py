@@ -129,7 +129,7 @@ def placed_in_z(b: Array, a: Array, wanted: Array, free: FreeDegree) -> Placemen
     system = np.vstack([sylvester(b / scale, a, order), row / size])
     target = np.append(wanted[1:] - np.append(a[1:], np.zeros(order)), free.value / size)
     condition = float(np.linalg.cond(system))
-    if not np.isfinite(condition):  # A and B share a root exactly
+    if not condition < 1.0 / np.finfo(float).eps:  # A and B share a root, to rounding
         return Placement(DirectForm(np.zeros(states + 1), np.append(1.0, np.zeros(order))), math.inf)
     solution = np.linalg.solve(system, target) * unscale
     return Placement(DirectForm(q=solution[order:], p=np.append(1.0, solution[:order])), condition)

@@ -15,7 +15,33 @@ from design.table import design
 from records.errors import BadInput
 from records.plant import load_plant
 from sim.bind import bind
-from tests.own_plants import CART_POLE
+from tests.own_plants import CART_POLE, OwnPlant
+
+REELS = OwnPlant(
+    {
+        "J": (1e-3, 1e-4, "kg m^2"),
+        "r": (0.03, 0.0, "m"),
+        "k": (200.0, 20.0, "N m^-1"),
+        "K": (0.05, 5e-3, "N m V^-1"),
+        "b": (2e-3, 2e-4, "N m s"),
+    },
+    {"stretch_m": 1e-5},
+    """
+s, v, w, ua, ub = (symbol(name) for name in ("stretch_m", "v_rad_s", "w_rad_s", "ua_V", "ub_V"))
+pull = p["r"] * p["k"] * s
+return Model(
+    name="NAME", states=(s, v, w), inputs=(ua, ub), outputs={"stretch_m": s}, parameters=PARAMETERS,
+    rates={
+        s: p["r"] * (w - v), v: (p["K"] * ua - p["b"] * v + pull) / p["J"], w: (p["K"] * ub - p["b"] * w - pull) / p["J"],
+    },
+    axes=(), input_limits={ua: (-12, 12), ub: (-12, 12)},
+    places=Places(
+        inputs={"left": InputPlace(ua, "V", 5.0), "right": InputPlace(ub, "V", 5.0)},
+        sensors={"cell": SensorPlace("stretch_m", "m", 0.02)},
+    ),
+)
+""",
+)
 
 POLES = [-3, -4, -5, -6, -10, -15, -20, -25]
 
@@ -78,3 +104,13 @@ def test_a_zero_is_told_too_as_a_faster_loop_wants_a_pole_near_it() -> None:
     """Truth: (s + 2)/(s^2 + 10 s + 25); a hold leaves the zero where it is, to 2 %."""
     told = advice(of([[0, 1], [-25, -10]], [0, 1], [2, 1]), integrates=True)
     assert float(told.split("its zeros at ")[1].split(" rad/s")[0]) == pytest.approx(-2.0, rel=0.02)
+
+
+def test_a_motion_that_the_output_does_not_show_is_told_with_its_speed(tmp_path: Path) -> None:
+    """Truth: two equal reels on a tape; what stretches it is their difference, and as one they run out at -b/J = -2 rad/s."""
+    path = REELS.write(tmp_path, "reels")
+    wishes = "poles_rad_s = [-3, -4, -5, -6, -18, -22]\nreference_min_m = 0.001\nreference_max_m = 0.02\n"
+    path.write_text(f"{path.read_text()}\n[design.tension]\ninput = 'ub_V'\n{wishes}")
+    reels = bind(load_plant(path))
+    with pytest.raises(BadInput, match=r"its motion at -2 rad/s has a pole and a zero in one place"):
+        design(reels, read_settings(reels))
