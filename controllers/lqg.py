@@ -24,12 +24,13 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from codegen.law_frame import LawNumbers, Sample, polynomial
+from controllers.coupled import demand_held_together
 from controllers.equations.designing import Points, axis_table, largest_output, law_table
 from controllers.equations.equation_controller import EquationController
 from controllers.equations.frame import AxisNumbers, Decisions
-from controllers.equations.judging import demand_held_at_rest, demand_margins, demand_robust, demand_stable
+from controllers.equations.judging import demand_held_at_rest, demand_margins
 from controllers.lqg_gains import Gains, Speeds, gains_at, wished_speeds
-from controllers.lqg_loop import controller_at, coupled_poles, coupled_sensitivity, open_loop
+from controllers.lqg_loop import controller_at, open_loop
 from controllers.pid_tuning import SENSITIVITIES
 from design.loop import plant_polynomials
 from design.schedule import fit, stored_fit
@@ -212,16 +213,12 @@ def _gains(points: Points, axis: str, values: Mapping[str, Array], degrees: Mapp
 def _judge(points: Points, gains: Mapping[str, LqgGains]) -> None:
     """Raise BadInput naming operating point and margin that a loop does not hold, alone or with all others closed."""
     settings, sampled = points.settings, {axis: points.sampled(axis) for axis in gains}
-    for index, (psi_rad, whole) in enumerate(zip(points.psi_rad.tolist(), points.whole(), strict=True)):
+    for index, psi_rad in enumerate(points.psi_rad.tolist()):
         controllers = {axis: controller_at(own, psi_rad) for axis, own in gains.items()}
         for axis, controller in controllers.items():
             plant = plant_polynomials(sampled[axis][index])
             demand_margins(settings, settings.place(axis, psi_rad), open_loop(controller, plant))
-        together = coupled_poles(whole, tuple(controllers.values()))
-        demand_stable("slowest pole of all loops together", settings.place("all axes", psi_rad), together)
-        found = coupled_sensitivity(whole, tuple(controllers.values()))
-        for axis, sensitivity in zip(controllers, found.tolist(), strict=True):
-            demand_robust(settings, settings.place(axis, psi_rad), sensitivity, SENSITIVITY)
+        demand_held_together(points, index, controllers, SENSITIVITY)
 
 
 def _origin(points: Points, axis: str, speeds: Speeds, share: float) -> dict[str, Any]:

@@ -14,7 +14,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+import numpy as np
+
 from codegen.law_frame import LawNumbers, Sample
+from controllers.coupled import LinearController, demand_held_together
 from controllers.equations.designing import Points, axis_table, largest_output, law_table
 from controllers.equations.equation_controller import EquationController
 from controllers.equations.frame import AxisNumbers, Decisions
@@ -95,8 +98,25 @@ def design(points: Points) -> LawTable[PidGains]:
     if found is not None:
         return _tuned_table(points, found)
     tunings = {loop.axis: tune(points, loop.axis) for loop in points.settings.loops}
+    _judge(points, tunings)
     axes = {axis: axis_table(points, axis, _gains(points, axis, tuning)) for axis, tuning in tunings.items()}
     return law_table("pid", points, axes, {axis: _origin(tuning) for axis, tuning in tunings.items()})
+
+
+def _judge(points: Points, tunings: Mapping[str, Tuning]) -> None:
+    """Raise BadInput naming the operating point at which loops that are robust alone are not together."""
+    controllers = {axis: linear_controller(tuning, points.settings.sample_period_s) for axis, tuning in tunings.items()}
+    for index in range(len(points.psi_rad)):
+        demand_held_together(points, index, controllers, points.settings.margins.max_sensitivity)
+
+
+def linear_controller(tuning: Tuning, Ts_s: float) -> LinearController:
+    """(C.1) and (C.2) without limits, in the state (I, y_f)."""
+    gain = lag_gain(tuning.filter_s, Ts_s)
+    of_angle = tuning.k_d / tuning.filter_s * (1.0 - gain)
+    return LinearController(
+        np.diag([0.0, -gain]), np.array([-tuning.k_i * Ts_s, gain]), np.array([1.0, of_angle]), -tuning.k_p - of_angle
+    )
 
 
 FLOWN = "design.tuned"
@@ -150,8 +170,8 @@ CONTROLLER = EquationController(
     title="PID",
     source="seed 001, section 5.2.2, which prints no gains",
     plants=(
-        "any plant of one to four loops, as `ce150`, on which one set of gains a loop is robust over its range, and settles; else one on "
-        "which the gains of its [design.tuned.pid] do"
+        "any plant of one to four loops, as `ce150`, on which one set of gains a loop is robust over its range, alone and with all others "
+        "closed, and settles; else one on which the gains of its [design.tuned.pid] do"
     ),
     note=(
         "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 2, or where no gains do that below 3, "

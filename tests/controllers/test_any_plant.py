@@ -37,6 +37,8 @@ from verification.stimuli import standard_stimuli
 
 NAMES = ("pid", "lqg")
 PLANTS = ("aeroshield", "quanser_aero", "motor", "inverted_arm", "heater")
+# A PID a loop leaves quanser_aero's two, which push each other's axes, unstable together.
+DESIGNED = [(name, of) for of in PLANTS for name in NAMES if (name, of) != ("pid", "quanser_aero")]
 STEPS = 100_000 if SOAK else 5_000
 TARGET_STEPS = 2_000 if SOAK else 300
 
@@ -104,8 +106,7 @@ def designed(name: str, of: str) -> Any:
     return CONTROLLERS[name].design(plant(of), read_settings(plant(of)))
 
 
-@pytest.mark.parametrize("of", PLANTS)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("name", "of"), DESIGNED)
 def test_it_flies_with_its_references_in_double_precision_and_as_generated(name: str, of: str) -> None:
     # Truth: what settles leaves no reference, and the generated law flies as the law in double precision does.
     table = designed(name, of)
@@ -118,8 +119,7 @@ def test_it_flies_with_its_references_in_double_precision_and_as_generated(name:
         assert generated.mean_error_rad == pytest.approx(exact.mean_error_rad, abs=step)
 
 
-@pytest.mark.parametrize("of", PLANTS)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("name", "of"), DESIGNED)
 def test_twin_and_host_are_equal_in_all_bits(name: str, of: str) -> None:
     row, table = CONTROLLERS[name], designed(name, of)
     twin, host = row.twin(table), HostLaw(row.generate(table), loops=table.loops)
@@ -212,6 +212,12 @@ def test_an_input_that_holds_the_output_nowhere_is_refused_in_words(name: str, t
     spring = bind(load_plant(path))
     with pytest.raises(BadInput, match="wheel at rest: loop: got a steady u_V that does not move v_m"):
         CONTROLLERS[name].design(spring, read_settings(spring))
+
+
+def test_loops_that_are_robust_alone_and_unstable_together_are_refused_in_words() -> None:
+    # Truth: with both PIDs closed the linearised quanser_aero has a pole at +0.06 rad/s, and 18 of 100 spread ones do not settle.
+    with pytest.raises(BadInput, match=r"slowest pole of all loops together: got 0\.0\d* rad/s, expected below 0"):
+        CONTROLLERS["pid"].design(plant("quanser_aero"), read_settings(plant("quanser_aero")))
 
 
 def test_what_three_gains_cannot_hold_is_refused_in_words(tmp_path: Path) -> None:

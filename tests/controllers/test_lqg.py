@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from controllers.coupled import coupled_poles, coupled_sensitivity
 from controllers.lqg_gains import Gains, Speeds, gains_at
-from controllers.lqg_loop import controller_at, coupled_poles, coupled_sensitivity, open_loop
+from controllers.lqg_loop import controller_at, open_loop
 from design.discretise import sample
 from design.linearise import LinearPlant
 from design.loop import PlantPolynomials, closed_loop_poles, plant_polynomials
