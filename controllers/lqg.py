@@ -8,8 +8,8 @@ x_1 is the output's move in a sample, x_2 .. x_n what will move it later; v is t
  Written in moves (Kaminer, Pascoal,
 Khargonekar and Coleman, Automatica 31, 1995: the D-implementation of scheduled controllers), the law knows no operating point: at rest x
 is 0 at any of them, and stays 0 while the coefficients, polynomials in the scheduling output, change. A rest has v = 0, so y = r: the
-moves are the integral action. As the filter is told the limited move, nothing winds up. So r is the reference as it comes: the regulator
-goes to it as fast as its weights say, and a filter before it would only be slower. The law begins at the operating point: `held` is the
+moves are the integral action. As the filter is told the limited move, nothing winds up. So r is the reference as it comes: a filter
+before it would only be slower, but where a slow zero makes quick answers overshoot. The law begins at the operating point: `held` is the
 feed-forward there. What the coefficients are at one operating point stands in controllers/lqg_gains.py; each is fitted over the points by
 a polynomial of the lowest degree that is within FIT. Most are constants, as g bears what the plant's gain varies by.
 """
@@ -33,6 +33,7 @@ from controllers.lqg_gains import Gains, Speeds, gains_at, wished_speeds
 from controllers.lqg_loop import controller_at, open_loop
 from controllers.pid_tuning import SENSITIVITIES
 from design.loop import plant_polynomials
+from design.obstacles import finite_zeros
 from design.schedule import fit, stored_fit
 from records.errors import BadInput
 from records.law_table import LawTable
@@ -42,6 +43,7 @@ N = TypeVar("N")
 Array = NDArray[np.float64]
 
 FIT = 0.06  # of the largest coefficient of a kind: every power costs cycles, and most coefficients hardly vary
+REAL = 1e-6  # of a zero's size, the imaginary part that rounding leaves it
 KINDS = ("a", "b", "k", "l", "g", "inverse_g")
 # Shares of the wished speed, tried in turn until every loop, the others closed, is robust: |1/(1 + L)| within what a PID gets at most.
 # quanser_aero, whose inputs push both axes alike, needs a quarter; a zero to the right, as a drum's level has, a half.
@@ -147,11 +149,25 @@ def design(points: Points) -> LawTable[LqgGains]:
             if share == SLOWER[-1]:
                 raise
             continue
-        axes = {axis: axis_table(points, axis, own, 0.0) for axis, own in gains.items()}
+        axes = {
+            axis: axis_table(points, axis, own, _filter_s(points, axis, speeds[axis])) for axis, own in gains.items()
+        }
         return law_table(
             "lqg", points, axes, {axis: _origin(points, axis, entry, share) for axis, entry in speeds.items()}
         )
     raise AssertionError
+
+
+def _filter_s(points: Points, axis: str, speeds: Speeds) -> float:
+    """The time constant of the reference's filter [s]: none, but where a real zero lies between -alpha and 0, by which every quick answer
+    overshoots (a room whose air is warm before its walls), that of the plant file.
+    """
+    for plant in points.sampled(axis):
+        zeros = np.log1p(finite_zeros(plant_polynomials(plant)).astype(complex)) / plant.sample_period_s
+        real = zeros.real[np.abs(zeros.imag) < REAL * np.abs(zeros)]
+        if np.any((-speeds.regulator_rad_s < real) & (real < 0.0)):
+            return points.settings.axis(axis).prefilter_time_constant_s
+    return 0.0
 
 
 def _all_gains(points: Points, speeds: Mapping[str, Speeds]) -> dict[str, LqgGains]:
@@ -235,9 +251,10 @@ CONTROLLER = EquationController(
         "any plant of one to four loops of up to five states, as `ce150`, that holds the margins of [design] over its range, and settles"
     ),
     note=(
-        "is a Kalman filter of each loop's output and its moves, and an LQR that moves the input by what the filter says, both from "
+        "is a Kalman filter of each loop's output and its moves, and an LQR that moves the input by what the filter says, both designed at "
         "the operating points and scheduled by polynomials. Written in moves it needs no operating "
-        "point, integrates, and, as the filter is told the limited voltage, does not wind up; so its references need no filter. Both "
+        "point, integrates, and, as the filter is told the limited voltage, does not wind up; so its references need no filter, "
+        "but where a zero slower than the loop makes every quick step overshoot. Both "
         "are the cheapest of a prescribed stability: poles to the right of -alpha go to their mirror images there, all others stay. alpha "
         "is 1.85 times the slowest wished pole for the regulator and 8 times for the filter. Where |1/(1 + L)| of a loop, the others "
         "closed, would pass 3, the regulators of all are slower, as far as an eighth. "

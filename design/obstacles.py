@@ -23,7 +23,7 @@ FASTEST = 1e-12  # |z| of a pole that has died away within one sample
 
 def advice(plant: PlantPolynomials, integrates: bool) -> str:
     """What to do about a plant that no usable controller was found for, in words."""
-    zeros, poles = _zeros(plant), polynomial_roots(plant.a)
+    zeros, poles = finite_zeros(plant), polynomial_roots(plant.a)
     if integrates and np.any(np.abs(zeros) < AT_REST * np.max(np.abs(poles))):
         return (
             "at rest this input does not move that output, so nothing holds it at a value: "
@@ -52,7 +52,7 @@ def advice(plant: PlantPolynomials, integrates: bool) -> str:
     )
 
 
-def _zeros(plant: PlantPolynomials) -> NDArray[np.complex128]:
+def finite_zeros(plant: PlantPolynomials) -> NDArray[np.complex128]:
     """The finite zeros, as gamma: leading coefficients that are rounding, or nothing, are no zeros."""
     sizes = np.abs(plant.b) * np.max(np.abs(polynomial_roots(plant.a))) ** np.arange(len(plant.b))
     kept = np.flatnonzero(sizes > AT_REST**2 * np.max(sizes))

@@ -183,6 +183,43 @@ def test_a_schedule_that_changes_nothing_is_no_obstacle(feedforward_degree: int,
     assert host.self_test() == 0
 
 
+ROOM = OwnPlant(
+    {"C": (80.0, 8.0, "J K^-1"), "W": (500.0, 50.0, "J K^-1"), "G": (4.0, 0.4, "W K^-1"), "H": (9.0, 0.9, "W K^-1")},
+    {"air_K": 0.01},
+    """
+wall, air, heat = symbol("wall_K"), symbol("air_K"), symbol("heat_W")
+return Model(
+    name="NAME", states=(wall, air), inputs=(heat,), outputs={"air_K": air}, parameters=PARAMETERS,
+    rates={
+        wall: (p["H"] * (air - wall) - p["G"] * wall) / p["W"], air: (heat - p["H"] * (air - wall)) / p["C"],
+    },
+    axes=(), input_limits={heat: (0, 600)},
+    places=Places(inputs={"heater": InputPlace(heat, "W", 300.0)}, sensors={"probe": SensorPlace("air_K", "K", 50.0)}),
+)
+""",
+)
+ROOM_WISHES = """
+[design]
+sample_period_s = 0.05
+[design.air]
+poles_rad_s = [-0.05, -0.06, -0.2, -0.25]
+prefilter_time_constant_s = 20.0
+reference_min_K = 10.0
+reference_max_K = 50.0
+"""
+
+
+def test_a_slow_zero_keeps_the_filter_of_the_reference_and_no_step_overshoots(tmp_path: Path) -> None:
+    # Truth: the wall's zero at -(H + G)/W = -0.026 rad/s is slower than the loop; without the filter steps overshoot by a fifth.
+    path = ROOM.write(tmp_path, "room")
+    path.write_text(path.read_text() + ROOM_WISHES)
+    room = bind(load_plant(path))
+    table = CONTROLLERS["lqg"].design(room, read_settings(room))
+    assert table.axes[0].prefilter_time_constant_s == 20.0
+    assert max(entry.overshoot for entry in fly_double(room, table).tracking) <= OVERSHOOT.green
+    assert designed("lqg", "aeroshield").axes[0].prefilter_time_constant_s == 0.0
+
+
 def test_loops_that_push_one_another_stay_with_their_references_on_spread_plants() -> None:
     # Truth: of 30 plants of quanser_aero with parameters within 10 %, each of an unused seed, every step settles and overshoots by at most
     # 5 %, what counts as green.
