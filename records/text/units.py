@@ -3,8 +3,10 @@
 import math
 import re
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 
-Dimension = tuple[int, int, int, int, int]  # powers of kg, m, s, V, K
+Power = int | Fraction  # a valve's flow goes by the root of a pressure
+Dimension = tuple[Power, Power, Power, Power, Power]  # of kg, m, s, V, K
 
 _SYMBOLS: Mapping[str, Dimension] = {
     "kg": (1, 0, 0, 0, 0),
@@ -45,20 +47,20 @@ _SUFFIXES = (
     "W",
     "s",
 )  # a longer one before its own ending
-_FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+))?$")
+_FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+(?:\.5)?))?$")
 
 
 def dimension(unit: str) -> Dimension:
-    """Powers of (kg, m, s, V, K) of a product such as "rad s^-2 V^-1"; a remark in parentheses is passed over.
+    """Powers of (kg, m, s, V, K), whole or halves, of a product such as "rad s^-2 V^-1" or "m^3 s^-1 Pa^-0.5".
 
-    Only coherent SI symbols are known, so equal dimensions mean equal scale. Raises ValueError naming the symbol that is not known.
+    A remark in parentheses is passed over. Only coherent SI symbols are known, so equal dimensions mean equal scale. Raises ValueError naming the symbol that is not known.
     """
-    total = [0, 0, 0, 0, 0]
+    total: list[Power] = [0, 0, 0, 0, 0]
     for sign, part in _parts(re.sub(r"\([^)]*\)", " ", unit)):
         match = _FACTOR.match(part)
         if match is None or match[1] not in _SYMBOLS:
             raise ValueError(f"unit symbol {part!r} is not one of {', '.join(_SYMBOLS)}")
-        power = sign * int(match[2] or 1)
+        power = sign * Fraction(match[2] or 1)
         for axis, exponent in enumerate(_SYMBOLS[match[1]]):
             total[axis] += power * exponent
     return total[0], total[1], total[2], total[3], total[4]

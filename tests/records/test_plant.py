@@ -136,6 +136,7 @@ def test_a_file_that_is_no_plant_is_refused(tmp_path, text, message):
         ("V A^-1 s", "H"),
         ("Ohm F", "s"),
         ("Pa m^3 s^-1", "W"),
+        ("m^3 s^-1 V^-1 Pa^-0.5", "m^3.5 kg^-0.5 V^-1"),
     ],
 )
 def test_units_that_mean_the_same_have_the_same_dimensions(one, other):
