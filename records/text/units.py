@@ -53,7 +53,8 @@ _FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+(?:\.5)?))?$")
 def dimension(unit: str) -> Dimension:
     """Powers of (kg, m, s, V, K), whole or halves, of a product such as "rad s^-2 V^-1" or "m^3 s^-1 Pa^-0.5".
 
-    A remark in parentheses is passed over. Only coherent SI symbols are known, so equal dimensions mean equal scale. Raises ValueError naming the symbol that is not known.
+    A remark in parentheses is passed over. Only coherent SI symbols are known, so equal dimensions mean equal scale. Raises ValueError
+    naming the symbol that is not known.
     """
     total: list[Power] = [0, 0, 0, 0, 0]
     for sign, part in _parts(re.sub(r"\([^)]*\)", " ", unit)):
