@@ -16,13 +16,14 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.manoeuvres import at_rest
 from sim.simulate import simulate
-from tests.own_plants import REFUSED, WORKING
+from tests.own_plants import PLAIN, REFUSED, WORKING, OwnPlant
 from tests.soak import sampled
 from twinlaw import diagnose, fly, identify
 from twinlaw.command import main
 
 # What each rig has and its plant file has not; where nothing is said, the arm rubs.
 RIGS = {"coil": "input.deadzone", "two_axes": "post.coulomb", "no_rotors": "post.coulomb", "elastic": "motor.coulomb"}
+ENDS = "reference_min_rad = -0.5\nreference_max_rad = 0.5\n"
 SIZES = {"deadzone": 1.0, "coulomb": 0.03}  # V and N m
 
 
@@ -110,6 +111,15 @@ def test_what_cannot_be_flown_yet_says_so(verb: str, tmp_path: Path, capsys: pyt
     assert error.count("\n") == 1
     assert "fault of twinlaw" not in error
     assert not (tmp_path / "out").exists()
+
+
+def test_equations_without_a_slope_at_rest_are_told_as_such(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # Truth: the root of an angle has no slope at 0, where the arm is put to rest; no parameter is wrong.
+    root = OwnPlant(PLAIN.parameters, PLAIN.sensors, PLAIN.body.replace("sympy.sin(theta)", "sympy.sqrt(theta)"))
+    path = root.write(tmp_path, "my_root")
+    path.write_text(f"{path.read_text()}\n[design.arm]\npoles_rad_s = [-3, -4, -8, -10]\n{ENDS}")
+    assert main(["design", "--plant", str(path), "--out", str(tmp_path / "out")]) == 2
+    assert "a root or a quotient without a slope at rest" in capsys.readouterr().err
 
 
 def test_an_import_of_a_table_takes_the_plant(tmp_path: Path) -> None:

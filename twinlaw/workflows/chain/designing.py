@@ -89,7 +89,9 @@ def _computable(where: str) -> Iterator[None]:
             yield
     except (ArithmeticError, np.linalg.LinAlgError, VerificationFailed) as error:
         got = f"numbers that cannot be computed with ({error})"
-        remedy = "look for a wrong power of ten among the parameters"
+        remedy = (
+            "look for a wrong power of ten among the parameters, and for a root or a quotient without a slope at rest"
+        )
         raise BadInput("plant", where, got, "magnitudes of a rig, in SI units", remedy) from error
 
 
