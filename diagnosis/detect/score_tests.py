@@ -184,7 +184,7 @@ def _whole_starts(case: Case, linearisation: Linearisation, effect: Effect) -> l
         return _steps(case, linearisation, effect)
     levels = _levels(case, effect) if effect.size.role is Role.LEVEL else list(effect.size.starts)
     return [
-        {**shapes, effect.size.symbol: value}
+        {**effect.absent, **shapes, effect.size.symbol: value}
         for value in levels or [effect.size.reference]
         for shapes in shape_starts(effect)
     ]

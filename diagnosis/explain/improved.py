@@ -11,13 +11,14 @@ from diagnosis.fit.coloured_noise import colour_sd
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.jitter import jitter_sd
+from diagnosis.fit.profile_likelihood import known_to
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import coefficients, known_beginning
+from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, known_beginning
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
 from sim.added_effects import with_effects
-from sim.effect import Effect, Role
+from sim.effect import Effect, EffectParameter, Role
 
 Array = NDArray[np.float64]
 CORRELATION_DIGITS = 9
@@ -109,12 +110,16 @@ def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
         return {symbol: decisions.GRID_SD * v for symbol, v in fit.hypothesis.effects[effect.name].items()}
     if effect.is_noise:
         return colour_sd(case, fit.hypothesis, effect)
-    scatter = effect.having(Role.JITTER)
-    if scatter is None:
-        return {}
+    beside = [p for p in effect.parameters if p.role in (Role.JITTER, Role.HOLD, Role.SHIFT)]
     if effect.name in case.stated:
-        return {scatter.symbol: case.stated_sd[effect.name][scatter.symbol]}
-    return {scatter.symbol: jitter_sd(case, fit.hypothesis, effect.name)}
+        return {p.symbol: case.stated_sd[effect.name][p.symbol] for p in beside}
+    return {p.symbol: _sd_by_likelihood(case, fit.hypothesis, effect.name, p) for p in beside}
+
+
+def _sd_by_likelihood(case: Case, hypothesis: Hypothesis, name: str, parameter: EffectParameter) -> float:
+    if parameter.role is Role.JITTER:
+        return jitter_sd(case, hypothesis, name)
+    return known_to(case, hypothesis, name, parameter)
 
 
 def _unit(case: Case, effect: str, symbol: str) -> str:

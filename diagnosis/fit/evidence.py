@@ -39,7 +39,8 @@ def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     sign, volume = np.linalg.slogdet(found.information[np.ix_(known, known)])
     supposed = [effects[name] for name in found.hypothesis.effects]
     prior -= WAVE_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
-    prior -= STEPS_COST * sum(p.rough and p.is_size for effect in supposed for p in effect.parameters)
+    rough = [p.is_size for effect in supposed for p in effect.parameters if p.rough]
+    prior -= sum(STEPS_COST if is_size else decisions.SHAPE_COST for is_size in rough)
     prior -= COLOUR_COST * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior
 

@@ -20,7 +20,7 @@ DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, LAG_JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
 OUT_OF_REACH = 1e3  # references
-WITHOUT_SLOPE = (Role.JITTER, Role.BEGINNING)  # found otherwise, or known
+WITHOUT_SLOPE = (Role.JITTER, Role.BEGINNING, Role.HOLD, Role.SHIFT)  # found otherwise, or known
 
 
 @dataclass(frozen=True)

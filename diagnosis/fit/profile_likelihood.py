@@ -8,6 +8,10 @@ from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from jobs.thread_map import thread_map
+from sim.effect import EffectParameter
+
+REACHES = (0.01, 0.03, 0.1, 0.3)  # of a number's range, over which the likelihood is asked how it falls
+A_DEVIATION_NATS = 0.5  # by which it falls over a standard deviation
 
 
 def likelihoods(case: Case, hypotheses: Sequence[Hypothesis]) -> list[float]:
@@ -20,3 +24,23 @@ def likeliest(case: Case, hypotheses: Sequence[Hypothesis]) -> tuple[Hypothesis,
     values = likelihoods(case, hypotheses)
     best = int(np.argmax(values))
     return hypotheses[best], values[best]
+
+
+def known_to(case: Case, hypothesis: Hypothesis, name: str, parameter: EffectParameter) -> float:
+    """What is known of an effect's number, in its unit: the least of REACHES over which the likelihood falls by A_DEVIATION_NATS to each
+    side; its whole range where it falls by less."""
+    at, width = hypothesis.effects[name][parameter.symbol], parameter.upper - parameter.lower
+    beside = [at + side * reach * width for reach in REACHES for side in (-1.0, 1.0)]
+    inside = [parameter.lower <= value <= parameter.upper for value in beside]
+    there, *values = likelihoods(
+        case,
+        [
+            hypothesis.with_value(name, parameter.symbol, value if within else at)
+            for value, within in [(at, True), *zip(beside, inside, strict=True)]
+        ],
+    )
+    falls = [not within or value < there - A_DEVIATION_NATS for value, within in zip(values, inside, strict=True)]
+    told = (
+        reach for reach, sides in zip(REACHES, zip(falls[::2], falls[1::2], strict=True), strict=True) if all(sides)
+    )
+    return width * next(told, 1.0)

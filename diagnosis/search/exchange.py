@@ -107,7 +107,7 @@ def _of_its_size(
         sizes.append(float(np.clip((other.size.zero or 0.0) + away, other.size.lower, other.size.upper)))
     rest = _without(hypothesis, name)
     return [
-        rest.with_effects({**rest.effects, twin: {**shapes, other.size.symbol: size}})
+        rest.with_effects({**rest.effects, twin: {**other.absent, **shapes, other.size.symbol: size}})
         for size in sizes
         for shapes in shape_starts(other)
     ]

@@ -13,7 +13,7 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero
 from diagnosis.fit.jitter import scatters, with_jitter
 from diagnosis.fit.process_noise import with_process_noise
-from diagnosis.fit.profile_likelihood import likeliest
+from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise
 from sim.effect import EffectParameter, Role
@@ -142,10 +142,30 @@ def _is_rough(case: Case, name: str) -> bool:
 
 
 def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float]) -> Hypothesis:
-    """The start with the likeliest size near it, where slopes do not lead to it."""
+    """The start with the likeliest size near it, where slopes do not lead to it; steps as they lie, or at their multiples where that is no
+    less likely than what such a shape costs."""
+    found = start
     for reach in reaches:
-        start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, TRIED))
-    return _reshaped(case, start, effect)
+        found = _likeliest(case, found, effect, np.linspace(1.0 - reach, 1.0 + reach, TRIED))
+    found = _reshaped(case, found, effect)
+    plain = _at_multiples(case, start, effect, reaches)
+    if plain is None:
+        return found
+    value, plainly = likelihoods(case, [found, plain])
+    return plain if plainly > value - decisions.SHAPE_COST else found
+
+
+def _at_multiples(case: Case, start: Hypothesis, name: str, reaches: Sequence[float]) -> Hypothesis | None:
+    """The same with steps at their multiples; None where an effect has none that may lie elsewhere."""
+    effect = case.library.effects[name]
+    shift = effect.having(Role.SHIFT)
+    if shift is None:
+        return None
+    plain, size = start.with_value(name, shift.symbol, 0.0), effect.size.symbol
+    for reach in reaches:
+        values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, TRIED)
+        plain = _likeliest_value(case, plain, name, size, values.tolist())
+    return plain
 
 
 def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:
@@ -185,8 +205,27 @@ def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:
 
 def _likeliest(case: Case, start: Hypothesis, effect: str, factors: Array) -> Hypothesis:
     """The start with that of the factors on an effect's size that the logs find likeliest."""
-    symbol = case.library.effects[effect].size.symbol
-    return _likeliest_value(case, start, effect, symbol, (start.effects[effect][symbol] * factors).tolist())
+    size = start.effects[effect][case.library.effects[effect].size.symbol]
+    best, value = likeliest(case, [_sized(case, start, effect, size * factor) for factor in factors.tolist()])
+    return best if value > -np.inf else start
+
+
+def _sized(case: Case, start: Hypothesis, name: str, size: float) -> Hypothesis:
+    """The start with another size of an effect; steps that may lie anywhere stay where they were about the mean command, or another size
+    would move them all there."""
+    effect, values = case.library.effects[name], start.effects[name]
+    shift, changed = effect.having(Role.SHIFT), {**values, effect.size.symbol: size}
+    before = values[effect.size.symbol]
+    if shift is not None and before > 0.0 and size > 0.0:
+        moved = values[shift.symbol] + _mean_command(case, effect.place) * (1.0 / before - 1.0 / size)
+        changed[shift.symbol] = float(moved - np.round(moved))
+    return start.with_effects({**start.effects, name: changed})
+
+
+def _mean_command(case: Case, place: str) -> float:
+    model = case.library.bound.model
+    column = model.inputs.index(model.places.inputs[place].variable)
+    return float(np.mean(np.concatenate([flight.filter_input.u[:, column] for flight in case.flights])))
 
 
 def _likeliest_value(case: Case, start: Hypothesis, effect: str, symbol: str, values: Sequence[float]) -> Hypothesis:

@@ -39,10 +39,10 @@ def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> FittedHyp
 
 def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, fly: Fly) -> None:
     # Rounded commands of 100 steps shift where they round with a step 1e-4 off, which costs 100 nats and bends all else.
-    truth = {"main_input.quantization": {"q": STEP_V, "h": 0.0}, "psi_sensor.offset": {"offset": OFFSET_RAD}}
+    truth = {"main_input.quantization": {"q": STEP_V, "h": 0.0, "s": 0.0}, "psi_sensor.offset": {"offset": OFFSET_RAD}}
     case = make_case(effect_library(plant), [fly(41, truth, 15.0, air=False)])
     nominal = nominal_fit(case)
-    off = {**truth, "main_input.quantization": {"q": STEP_V * (1.0 + 7e-4), "h": 0.0}}
+    off = {**truth, "main_input.quantization": {"q": STEP_V * (1.0 + 7e-4), "h": 0.0, "s": 0.0}}
     end: FittedHypothesis | None = fitted(case, nominal, off)
     for _ in range(2):
         assert end is not None
@@ -167,3 +167,13 @@ def test_an_effect_that_parameters_imitate_in_part_is_fitted_without_going_astra
     assert found is not None
     assert np.max(np.abs(found.fit.hypothesis.theta)) < 3.5
     assert found.fit.hypothesis.effects["tail_rotor.warmup"]["a"] == pytest.approx(0.22, rel=0.05)
+
+
+def test_a_twin_of_several_sizes_begins_with_all_of_them(plant: BoundPlant, fly: Fly) -> None:
+    # An inertia that goes with the elevation has two sizes, the term of Coriolis one: in its place both must be there.
+    coriolis = {"azimuth.coriolis": {"c": 0.01}}
+    case = make_case(effect_library(plant), [fly(43, coriolis, 8.0, air=False)])
+    found: dict[frozenset[str], FittedHypothesis] = {}
+    fit_twins(case, found, fitted(case, nominal_fit(case), coriolis))
+    twin = found[frozenset({"azimuth.inertia_shape"})]
+    assert set(twin.fit.hypothesis.effects["azimuth.inertia_shape"]) == {"J_0", "J_1"}

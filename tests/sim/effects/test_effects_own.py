@@ -40,7 +40,6 @@ OTHER_THINGS: Mapping[str, tuple[str, set[str]]] = {
     "twinlaw/pages/diagnose/answers.py": ("a heading", {"phase"}),
     "twinlaw/pages/diagnose/why.py": ("a heading", {"limit"}),
     "twinlaw/pages/diagnose/words.py": ("what of a rig changes, as classes say it", {"gain", "limit", "torque"}),
-    "twinlaw/pages/identify/frequency_tables.py": ("a cost", {"J"}),
     "twinlaw/pages/run/design_page.py": ("rows of a controller's table", {"q"}),
     "twinlaw/pages/run/design.py": ("headings", {"delay", "phase"}),
     "twinlaw/verbs/trace.py": ("a heading", {"difference"}),
