@@ -21,8 +21,8 @@ class Scheduled:
     plants = "any plant of one to four loops of up to five states, as `ce150`, that holds the margins of [design] over its range"
     note = (
         "is the table that `twinlaw run` flies ([theory.md](theory.md), sections 2 to 4): two poles a state of each axis and one "
-        "of a roll-off placed at 17 operating points, coefficients fitted over the elevation, integral action, references "
-        "filtered by 1/(T s + 1)^2."
+        "of a roll-off placed at each operating point of [design], coefficients fitted over what schedules them, integral "
+        "action, references filtered by 1/(T s + 1)^2."
     )
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> ControllerTable:

@@ -347,8 +347,9 @@ def _knows_losses(case: Case) -> bool:
 
 
 def flat_slopes(run: Pass) -> Array:
-    """Slopes (rows, columns) of all whitened innovations of a pass."""
-    assert run.dw is not None
+    """Slopes (rows, columns) of all whitened innovations of a pass; none of them where nothing is uncertain."""
+    if run.dw is None:
+        return np.zeros((run.w.size, 0))
     return run.dw.reshape(-1, run.dw.shape[2])
 
 

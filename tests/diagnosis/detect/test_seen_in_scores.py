@@ -7,11 +7,14 @@ import pytest
 
 from diagnosis.detect.input_steps import Kind, likely_steps
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.detect.visibility import cannot_tell, hidden, judged
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.nominal import nominal_fit
-from tests.diagnosis.arm import arm_case, arm_log, plain_linearisation
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import effect_library
+from sim.bind import bind
+from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
 
 STEP_V = 0.2
 
@@ -76,3 +79,17 @@ def test_a_plain_run_moves_nothing_far(far: float) -> None:
     linearisation = plain_linearisation()
     theta = linearisation.fit.hypothesis.theta
     assert len(moved_parameters(linearisation.case, theta, far)) == int((np.abs(theta) > far).sum())
+
+
+def test_where_nothing_is_uncertain_effects_are_still_scored() -> None:
+    # Truth: 0.4 mN m of dry friction in an arm all of whose parameters are known exactly; no coefficient can take a part of it.
+    plant = arm().plant
+    sure = {
+        name: replace(entry, sd=tuple(0.0 for _ in entry.values) if isinstance(entry.value, tuple) else 0.0)
+        for name, entry in plant.parameters.items()
+    }
+    known = bind(replace(plant, parameters=sure))
+    case = make_case(effect_library(known), [arm_log({"arm.coulomb": {"b": 4e-4}})])
+    best = score_effects(case, linearised(case, nominal_fit(case)), ["arm.coulomb"])[0]
+    assert best.absorbed == pytest.approx(0.0, abs=1e-9)
+    assert best.gain > 20.0
