@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, surely_better
+from diagnosis.decide.consequence import without_idle
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, surely_better, with_held_out
 from diagnosis.decide.weighing import Tried, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
@@ -20,6 +21,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Judged, Result, Seen
 from diagnosis.standing import of_consequence
+from diagnosis.validate.fitted_logs import readings_of
 from diagnosis.validate.score import Score
 from records.log import RunLog
 from sim.added_effects import library
@@ -220,3 +222,23 @@ def test_an_event_before_all_logs_is_none(plant: BoundPlant, instant_s: float, e
     assert happens(effects["elevation.weight_shift"], {"Delta": 0.01, "t_1": instant_s}) is event
     assert happens(effects["elevation.disturbance"], {"torque": 1e-3, "t_0": instant_s, "duration": 1.0})
     assert not happens(effects["azimuth.cable_spring"], SPRING["azimuth.cable_spring"])
+
+
+def test_what_logs_held_out_refute_does_not_stand_beside_what_they_bear_out() -> None:
+    # Truth: an arm that rubs by 0.4 mN m in all logs, and a pull of 0.3 mN m which the fitted hypothesis alone has: on the logs held out
+    # it predicts worse by more than it was said to predict better on the others.
+    rubs, pulled = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-4}}
+    case, other = arm_case(arm_log(rubs, seed=61)), arm_case(arm_log(rubs, seed=62))
+    plain = FittedHypothesis((), nominal_fit(case), 0.0)
+    right = fit(case, plain.fit.hypothesis.with_effects(rubs))
+    assert right is not None
+    alone = FittedHypothesis(("arm.coulomb",), right, 100.0)
+    wrong = replace(right, hypothesis=right.hypothesis.with_effects({**right.hypothesis.effects, **pulled}))
+    both = FittedHypothesis(("arm.coulomb", "arm.offset_force"), wrong, 120.0)
+    holdout = holdout_of(other, ["hold"], [None], case, plain)
+    ahead = with_held_out({alone: 20.0, both: 25.0}, holdout)
+    assert ahead[alone] == pytest.approx(20.0 + readings_of(other) * holdout.score(right.hypothesis).gain)
+    assert ahead[alone] > 20.0 > ahead[both] - ahead[alone] + 20.0
+    tried = Tried((both, alone), plain, case.library, 5.0)
+    assert without_idle(tried, {alone: 20.0, both: 25.0})[0].named == (both, alone)
+    assert without_idle(tried, ahead)[0].named == (alone,)
