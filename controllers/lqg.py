@@ -4,14 +4,14 @@
     v = g (k_0 (r - y) - k x),   u = held + v, limited,   w <- (u - held) / g,   held <- u       the regulator                  (C.12)
     x_i <- x_i + x_(i+1) - a_i x_1 + b_i w,   y <- y + x_1                               the sampled plant of n states          (C.13)
 
-x_1 is the output's move in a sample, x_2 .. x_n what will move it later; v is the input's, w that in the output's unit.
- Written in moves (Kaminer, Pascoal,
-Khargonekar and Coleman, Automatica 31, 1995: the D-implementation of scheduled controllers), the law knows no operating point: at rest x
-is 0 at any of them, and stays 0 while the coefficients, polynomials in the scheduling output, change. A rest has v = 0, so y = r: the
-moves are the integral action. As the filter is told the limited move, nothing winds up. So r is the reference as it comes: a filter
-before it would only be slower, but where a slow zero makes quick answers overshoot. The law begins at the operating point: `held` is the
-feed-forward there. What the coefficients are at one operating point stands in controllers/lqg_gains.py; each is fitted over the points by
-a polynomial of the lowest degree that is within FIT. Most are constants, as g bears what the plant's gain varies by.
+x_1 is the output's move in a sample, x_2 .. x_n what will move it later; v is the input's, w that in the output's unit. Written in moves
+(Kaminer, Pascoal, Khargonekar and Coleman, Automatica 31, 1995: the D-implementation of scheduled controllers), the law knows no
+operating point: at rest x is 0 at any of them, and stays 0 while the coefficients, polynomials in the scheduling output, change. A rest
+has v = 0, so y = r: the moves are the integral action. As the filter is told the limited move, nothing winds up. So r is the reference as
+it comes: a filter before it would only be slower, but where a slow zero makes quick answers overshoot. The law begins at the operating
+point: `held` is the feed-forward there. What the coefficients are at one operating point stands in controllers/lqg_gains.py; each is
+fitted over the points by a polynomial of the lowest degree that is within FIT. Most are constants, as g bears what the plant's gain
+varies by.
 """
 
 from collections.abc import Mapping, Sequence

@@ -23,21 +23,21 @@ AT_ONCE = 280  # side by side: time
 ASKED = 40  # by what they say for the size of their errors; of these what they gain is asked
 
 
-@dataclass(frozen=True, eq=False)
-class _Rounded:
-    """An input on its way: its column, the state that it drives, and what steps may be like."""
-
-    column: int
-    target: int
-    kinds: Sequence["Kind"]
-
-
 @dataclass(frozen=True)
 class Kind:
     """What steps are like, in shares of one: by how much each is held beyond its half, and where they lie."""
 
     hold: float = 0.0
     shift: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Rounded:
+    """An input on its way: its column, the state that it drives, and what steps may be like."""
+
+    column: int
+    target: int
+    kinds: Sequence[Kind]
 
 
 def likely_steps(

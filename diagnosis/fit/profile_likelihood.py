@@ -30,17 +30,12 @@ def known_to(case: Case, hypothesis: Hypothesis, name: str, parameter: EffectPar
     """What is known of an effect's number, in its unit: the least of REACHES over which the likelihood falls by A_DEVIATION_NATS to each
     side; its whole range where it falls by less."""
     at, width = hypothesis.effects[name][parameter.symbol], parameter.upper - parameter.lower
-    beside = [at + side * reach * width for reach in REACHES for side in (-1.0, 1.0)]
-    inside = [parameter.lower <= value <= parameter.upper for value in beside]
-    there, *values = likelihoods(
-        case,
-        [
-            hypothesis.with_value(name, parameter.symbol, value if within else at)
-            for value, within in [(at, True), *zip(beside, inside, strict=True)]
-        ],
-    )
-    falls = [not within or value < there - A_DEVIATION_NATS for value, within in zip(values, inside, strict=True)]
-    told = (
-        reach for reach, sides in zip(REACHES, zip(falls[::2], falls[1::2], strict=True), strict=True) if all(sides)
-    )
-    return width * next(told, 1.0)
+    (there,) = likelihoods(case, [hypothesis])
+
+    def falls(reach: float) -> bool:
+        beside = (at - reach * width, at + reach * width)
+        inside = [value for value in beside if parameter.lower <= value <= parameter.upper]
+        values = likelihoods(case, [hypothesis.with_value(name, parameter.symbol, value) for value in inside])
+        return all(value < there - A_DEVIATION_NATS for value in values)
+
+    return width * next(filter(falls, REACHES), 1.0)

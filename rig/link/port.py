@@ -13,8 +13,8 @@ from records.errors import BadInput
 from records.protocol import PROTOCOL
 from rig.emulator.ports.serial_port import register_emulated_ports
 
-# What a lock and a driver answer where a port is open already.
 _OUTPUT_SPEED = 5  # of what termios tells
+# What a lock and a driver answer where a port is open already.
 _IN_USE = {errno.EAGAIN, errno.EBUSY}
 
 
