@@ -3,7 +3,10 @@
 A grid does not tell: steps of 0.2 rad are those of a sensor of 0.2 deg in degrees, and of a coarse sensor in radians.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
+from numpy.typing import NDArray
 
 from logcheck.finding import Array
 from records.log import RunLog
@@ -34,17 +37,9 @@ def _misfit(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> f
     starts = _starts(log, y, rows, half)
     if not starts.size:
         return np.inf
-    rate = (y[starts + half] - y[starts - half]) / (2 * half * log.sample_period_s)
+    rate = _rate(log, y, starts, half)
     straight = y[starts] + rate * rows * log.sample_period_s
-    begun = _states(log, bound)[starts]
-    for axis in bound.model.axes:
-        outputs = [out for out, expression in bound.model.outputs.items() if str(expression) == str(axis.position)]
-        if outputs:
-            place, own = outputs[0], outputs[0] == column
-            read = y if own else log.column(place)
-            begun[:, _index(bound, str(axis.position))] = read[starts]
-            slope = (read[starts + half] - read[starts - half]) / (2 * half * log.sample_period_s)
-            begun[:, _index(bound, str(axis.velocity))] = slope
+    begun = _begun(log, bound, starts, half, {column: y})
     u = np.stack([log.u[start : start + rows + 1] for start in starts])
     times = np.arange(rows + 1) * log.sample_period_s
     with np.errstate(all="ignore"):
@@ -58,7 +53,24 @@ def _misfit(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> f
     return float(np.sum(error[told] ** 2)) / whole if whole > 0.0 else np.inf
 
 
-def _starts(log: RunLog, y: Array, rows: int, half: int) -> np.ndarray:
+def _rate(log: RunLog, y: Array, starts: NDArray[np.int64], half: int) -> Array:
+    """dy/dt about each start, from half a window's rows to both sides."""
+    return np.asarray((y[starts + half] - y[starts - half]) / (2 * half * log.sample_period_s))
+
+
+def _begun(log: RunLog, bound: BoundPlant, starts: NDArray[np.int64], half: int, instead: Mapping[str, Array]) -> Array:
+    """States (starts, states) from which the model goes on: positions and speeds as read, some outputs as they stand `instead`."""
+    begun = _states(log, bound)[starts]
+    for axis in bound.model.axes:
+        outputs = [out for out, expression in bound.model.outputs.items() if str(expression) == str(axis.position)]
+        if outputs:
+            y = instead[outputs[0]] if outputs[0] in instead else log.column(outputs[0])
+            begun[:, _index(bound, str(axis.position))] = y[starts]
+            begun[:, _index(bound, str(axis.velocity))] = _rate(log, y, starts, half)
+    return begun
+
+
+def _starts(log: RunLog, y: Array, rows: int, half: int) -> NDArray[np.int64]:
     """Rows from which windows begin: at even times within, every output of them read."""
     every = np.linspace(half, len(y) - rows - 1, WINDOWS).astype(int) if len(y) > rows + half + 1 else np.arange(0)
     read = np.isfinite(y) & np.isfinite(log.y).all(axis=1)
