@@ -123,6 +123,7 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.balance_weight": lambda s: -s.tau_g * s.b * cos(s.psi),
     "elevation.offset_force": lambda s: -s.offset,
     "main_rotor.imbalance": lambda s: s.a * s.J_E * s.w_M**2 * sin(s.z),
+    "elevation.varying_inertia": lambda s: -s.e * s.a / 2 * s.J_E * cos(s.psi - s.q_0) * s.v_psi**2,
     "elevation.wind": lambda s: s.c * cos(s.phi - s.Phi_w),
     "azimuth.tilt": lambda s: -s.e * s.m * cos(s.phi - s.Phi_0) * sin(s.psi),
     "elevation.upper_stop": lambda s: -s.k * max(s.psi - pi / 4 + s.a, 0.0),
@@ -164,7 +165,10 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "tail_rotor.imbalance": lambda s: s.a * s.J_A * cos(s.psi) * s.w_T**2 * sin(s.z),
     "tail_rotor.axial_inflow": lambda s: -s.c * abs(s.w_T) * s.v_phi,
 }
-INERTIA_E = {"elevation.balance_weight": lambda s: s.j * s.b * s.J_E}
+INERTIA_E = {
+    "elevation.balance_weight": lambda s: s.j * s.b * s.J_E,
+    "elevation.varying_inertia": lambda s: s.a * s.J_E * sin(s.psi - s.q_0),
+}
 INERTIA_A = {
     "elevation.balance_weight": lambda s: s.j * s.b * s.J_E * cos(s.psi) ** 2,
     "azimuth.inertia_shape": lambda s: s.J_0 + s.J_1 * cos(s.psi) ** 2,

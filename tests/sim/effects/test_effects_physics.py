@@ -84,6 +84,7 @@ VALUES: Mapping[str, Mapping[str, float]] = {
     "tail_rotor.warmup": {"T": 8.0, "t_0": -1.3},
     "azimuth.inertia_shape": {"J_0": 0.0005},
     "elevation.balance_weight": {"j": 0.6},
+    "elevation.varying_inertia": {"a": 0.4, "q_0": 0.5, "e": 0.6},
     "azimuth.tilt": {"Phi_0": 0.7, "e": 0.4},
     "elevation.wind": {"Phi_w": 0.8},
     "azimuth.wind": {"Phi_w": -0.6, "T_w": 0.3},
