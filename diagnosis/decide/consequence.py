@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from diagnosis import decisions
 from diagnosis.decide.weighing import Tried, Weighed, beyond_spread
 from diagnosis.decisions import held_against
@@ -34,11 +36,14 @@ def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
 def without_idle(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> tuple[Tried, tuple[Decision, ...]]:
     """What was tried, without hypotheses one of whose effects does less than FORMS_OFF of what they predict better, beside the same
     without it; and the rules. What parameters beyond their spread cost counts: where these leave it to take an effect's part, it is not
-    idle."""
-    told = [(entry, fewer) for entry in tried.named if entry in ahead for fewer in _one_less(entry, ahead)]
+    idle.
+
+    The same without an idle effect keeps the evidence that it has beside it: what that explains is there whatever its name.
+    """
     idle = [
         (entry, fewer, gain, least)
-        for entry, fewer in told
+        for entry in sorted(tried.named, key=lambda entry: -len(entry.effects))
+        for fewer in (_one_less(entry, ahead) if entry in ahead else ())
         if (gain := ahead[entry] - beyond_spread(entry) - ahead[fewer] + beyond_spread(fewer))
         < (least := float(decisions.FORMS_OFF) * max(ahead[entry], 0.0))
     ]
@@ -53,8 +58,11 @@ def without_idle(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> tuple
         )
         for entry, fewer, gain, least in idle
     )
+    beside = dict(tried.beside)
+    for entry, fewer, *_ in idle:  # triples first, so that what a pair has beside an idle effect reaches a single one
+        beside[fewer] = max(beside.get(fewer, -np.inf), beside.get(entry, -np.inf), entry.evidence)
     gone = {entry for entry, *_ in idle}
-    return replace(tried, named=tuple(entry for entry in tried.named if entry not in gone)), rules
+    return replace(tried, named=tuple(entry for entry in tried.named if entry not in gone), beside=beside), rules
 
 
 def _one_less(entry: FittedHypothesis, asked: Iterable[FittedHypothesis]) -> list[FittedHypothesis]:

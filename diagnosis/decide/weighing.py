@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.resources import files
 
@@ -63,7 +63,8 @@ class Weighed:
 @dataclass(frozen=True, eq=False)
 class Tried:
     """All that may explain a gap: hypotheses with effects, the plant without any, what forms still gain beside the best of them in nats,
-    and parameters beyond their spread alone with their evidence (None: there are none)."""
+    and parameters beyond their spread alone with their evidence (None: there are none); and the evidence that hypotheses have `beside`
+    effects that are not worth a name."""
 
     named: tuple[FittedHypothesis, ...]
     nominal: FittedHypothesis
@@ -71,6 +72,11 @@ class Tried:
     left_nats: float
     beyond: FittedHypothesis | None = None
     retune: float | None = None
+    beside: Mapping[FittedHypothesis, float] = field(default_factory=dict)
+
+    def evidence(self, entry: FittedHypothesis) -> float:
+        """That of a hypothesis, alone or beside what has no name."""
+        return max(entry.evidence, self.beside.get(entry, -np.inf))
 
 
 @cache
@@ -116,20 +122,21 @@ def _ahead_nats(told: ModelComparison, shares: Array) -> float | None:
 def _comparison(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> ModelComparison:
     least = min(ahead.values(), default=0.0)
     nominal, effects = tried.nominal, tried.library.effects
-    first = max(tried.named, key=lambda entry: entry.evidence, default=nominal)
-    best = first.evidence if tried.retune is None else max(first.evidence, tried.retune)
+    first = max(tried.named, key=tried.evidence, default=nominal)
+    found = tried.evidence(first)
+    best = found if tried.retune is None else max(found, tried.retune)
     return ModelComparison(
         candidates=tuple(
             Candidate(
                 " + ".join(entry.effects),
-                entry.evidence - nominal.evidence,
+                tried.evidence(entry) - nominal.evidence,
                 prior_odds(entry, effects, tried.library.frictionless, tried.library.steps) - beyond_spread(entry),
                 ahead.get(entry, least),
             )
             for entry in tried.named
         ),
         gain_nats=max(best - nominal.evidence, 0.0),
-        formed_nats=max(first.evidence - _read_off(tried, first).evidence, 0.0),
+        formed_nats=max(found - _read_off(tried, first).evidence, 0.0),
         left_nats=tried.left_nats,
         parameters_nats=None if tried.retune is None else tried.retune - nominal.evidence,
         parameters_ahead_nats=0.0 if tried.beyond is None else ahead.get(tried.beyond, least),

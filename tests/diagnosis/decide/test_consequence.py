@@ -11,10 +11,10 @@ from diagnosis.decide.weighing import Tried, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
+from diagnosis.fit import nominal
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
-from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.result import Judged, Seen
@@ -81,12 +81,8 @@ def test_a_small_gap_needs_predictions_that_are_better_than_chance(
 
 
 def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
-    """A fit of effects with the noise that then remains."""
-    found = fit(case, nominal_hypothesis(case, -1.5).with_effects(effects))
-    assert found is not None
-    ended = fit(case, with_process_noise(case, found.hypothesis))
-    assert ended is not None
-    return as_fitted(case, ended)
+    """A fit of effects with the white noise that then remains."""
+    return as_fitted(case, nominal.settled(case, nominal_hypothesis(case, -1.5).with_effects(effects)))
 
 
 def test_what_is_there_predicts_the_logs_better_and_what_is_idle_does_not() -> None:
@@ -154,6 +150,23 @@ def test_an_effect_must_do_its_part_beside_any_that_it_stands_with() -> None:
     assert found.named == (rubbing, pulled)
     assert rule.outcome == "arm.coulomb is left out"
     assert without_idle(tried, {both: 40.0, rubbing: 5.0, pulled: 30.0})[0].named == (both, rubbing, pulled)
+
+
+def test_what_an_idle_effect_explains_row_by_row_does_not_speak_against_what_predicts() -> None:
+    # Truth by hand: the force alone predicts as well as both. Friction predicts nothing, but explains rows by 640 nats, alone or beside.
+    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
+    case = arm_case(arm_log(pull, seed=76))
+    both, rubbing, pulled, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, pull, {}))
+    at = plain.evidence
+    both, rubbing, pulled = (
+        replace(entry, evidence=at + nats) for entry, nats in ((both, 700.0), (rubbing, 640.0), (pulled, 50.0))
+    )
+    ahead = {both: 40.0, rubbing: 0.0, pulled: 39.0}
+    found, _ = without_idle(Tried((both, rubbing, pulled), plain, case.library, 5.0), ahead)
+    assert [found.evidence(entry) - at for entry in (rubbing, pulled)] == [640.0, 700.0]
+    weighed = weigh(found, ahead)
+    assert weighed.fitted[0] is pulled
+    assert weighed.ahead_nats == pytest.approx(39.0, abs=0.5)
 
 
 @pytest.mark.parametrize(
