@@ -59,11 +59,19 @@ class Noise:
     rest_s: float
 
 
+def slope_of(noise: Noise, other: Noise, by: float) -> Noise:
+    """How a noise changes with a number, `by` so much of which it becomes the other."""
+    return replace(
+        noise, **{name: (getattr(other, name) - getattr(noise, name)) / by for name in ("q", "rub", "p0", "forget")}
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Pass:
     """One pass over a log of n rows: whitened innovations w (n, slots) and their variances s, NaN where nothing was measured; slopes
     dw (n, slots, columns) or None, their products `gram` = dw'dw and `pull` = dw'w; predicted states x and filtered ones (n, states).
-    `gains` as in filter.h: F, K, H by step.
+    `gains` as in filter.h: F, K, H by step. By numbers of the noise, the `score` (numbers,) of the likelihood and Fisher's `information`
+    (numbers, numbers).
     """
 
     w: Array
@@ -74,6 +82,8 @@ class Pass:
     log_likelihood: float
     gram: Array
     pull: Array
+    score: Array
+    information: Array
     gains: tuple[Array, Array, Array] | None = None
 
 
@@ -98,25 +108,32 @@ class Filter:
         slots: Sequence[int],
         *,
         columns: Sequence[int] = (),
+        noises: Sequence[Noise] = (),
         keep_slopes: bool = False,
         locked: Sequence[str] = (),
         keep_gains: bool = False,
     ) -> Pass | None:
-        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none; `columns` indices into p.
+        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none; `columns` indices into p; `noises`
+        the slopes of the noise by each of its numbers.
 
         None where the state left all bounds or rattles without end: the parameters do not fit at all.
         """
         assert len(columns) <= self.lib.MAX_COLUMNS
+        assert len(noises) <= self.lib.MAX_NOISES
         width, steps = max(slots) + 1, len(filter_input.t_s)
-        rubs = noise.rub if self.axes else np.zeros(1)
-        given = _given(filter_input, p, x0, replace(noise, rub=rubs)) | {
-            "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
-            "column": np.array(columns, dtype=np.int32),
-            "slot": np.array(slots, dtype=np.int32),
-        }
+        given = (
+            _given(filter_input, p, x0, self._rubbing(noise))
+            | _slopes([self._rubbing(by) for by in noises])
+            | {
+                "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
+                "column": np.array(columns, dtype=np.int32),
+                "slot": np.array(slots, dtype=np.int32),
+            }
+        )
         found = self._found(filter_input, width, len(columns), keep_slopes, keep_gains)
+        found |= {"score": np.zeros(len(noises)), "information": np.zeros((len(noises), len(noises)))}
         request = self._request("filter_request *", given | found)
-        request.steps, request.columns, request.slots = steps, len(columns), width
+        request.steps, request.columns, request.slots, request.noises = steps, len(columns), width, len(noises)
         request.rest_s, request.stated_rad_s = noise.rest_s, self.stated_rad_s
         if self.lib.filter_run(request) != steps:
             return None
@@ -124,6 +141,10 @@ class Filter:
         assert gram is not None
         gains = None if F is None or K is None or H is None else (F, K, H)
         return Pass(**found, gram=gram, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
+
+    def _rubbing(self, noise: Noise) -> Noise:
+        """The noise with one doubt of friction, which counts for nothing, where there is no axis."""
+        return noise if self.axes else replace(noise, rub=np.zeros(1))
 
     def _found(
         self, filter_input: FilterInput, width: int, columns: int, slopes: bool, gains: bool
@@ -231,6 +252,12 @@ def _given(filter_input: FilterInput, p: Array, x0: Array, noise: Noise) -> dict
         "forget": _double(noise.forget),
         "rub": _double(noise.rub),
     }
+
+
+def _slopes(noises: Sequence[Noise]) -> dict[str, NDArray[Any] | None]:
+    """The slopes of the noise by its numbers, as in filter.h."""
+    names = ("q", "p0", "forget", "rub")
+    return {f"{name}_by": _double([getattr(by, name) for by in noises]) for name in names} if noises else {}
 
 
 def _counted(filter_input: FilterInput, slots: Sequence[int]) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:

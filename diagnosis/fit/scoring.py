@@ -3,32 +3,30 @@
 (1)  2 ln L = -sum (ln s + nu^2 / s),   g_i = d ln L / dx_i
 (2)  I_ik = sum (d ln s / dx_i d ln s / dx_k / 2 + d nu / dx_i d nu / dx_k / s),   x <- x + I^-1 g
 
-(Harvey 1989, section 3.4.5), s the innovations' variances. One pass more for each number gives both, so that numbers which do the same
-part of the noise give way to each other at once.
+(Harvey 1989, section 3.4.5), s the innovations' variances. The filter's own pass gives both, so that numbers which do the same part of the
+noise give way to each other at once.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import likelihood, stacked
+from diagnosis.fit.gauss_newton import likelihood
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
-from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
-NUDGE = 0.05  # decades, over which slopes are taken
-# Of ln s and of a whitened innovation: more than a nudge makes of them. Beyond, an axis came to rest a row earlier: no slope.
-JUMP, FAR = 0.3, 1.0
+NUDGE = 1e-4  # decades, over which slopes of the noise itself are taken
 MOST_STEPS = 10
 LITTLE_PROMISED = 1.0  # nats: a tenth of what tells two names apart (TAKEN_IN)
 NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
 UNKNOWN_SD = 1e3  # decades: next to nothing is known beforehand
 SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
+TWICE = 2.0 * float(np.log(10.0))  # of a decade of a number, that its variance grows by
 ACROSS = 0.3  # decades, over a ridge or a hollow that an axis makes which comes to rest
 
 
@@ -48,41 +46,71 @@ class Number:
 
 def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) -> tuple[Hypothesis, float]:
     """The hypothesis with the most probable of those numbers nearby, and its log likelihood; -inf where the filter left all bounds."""
-
-    def worth(runs: Sequence[Pass], hypothesis: Hypothesis) -> float:
-        return likelihood(runs) - 0.5 * sum(number.away(hypothesis) ** 2 for number in numbers)
-
-    at, runs = start, passes(case, start)
+    at, runs = start, _passes(case, start, numbers)
     if runs is None:
         return start, -np.inf
     for _ in range(MOST_STEPS if numbers else 0):
-        g, information = _linear(case, at, runs, numbers)
-        step = _step(at, numbers, g, information)
-        promised, before = 0.5 * float(g @ step), worth(runs, at)
+        g, information = _linear(at, runs, numbers)
+        step, single = _step(at, numbers, g, information), _kept(g / np.diag(information))
+        promised = max(_promised(g, information, one) for one in (step, *np.diag(single)))
         if promised < LITTLE_PROMISED:
             break
-        alone = np.asarray(g / np.diag(information), float) if promised > NEARLY_THERE else None
-        for moved in _tries(at, numbers, step, alone):
-            there = passes(case, moved)
-            if there is not None and worth(there, moved) > before + LITTLE_PROMISED:
-                at, runs = moved, there
-                break
-        gained = worth(runs, at) - before
-        if gained < LITTLE_PROMISED or (promised < NEARLY_THERE and gained > 0.5 * promised):
+        tries = _tries(at, numbers, step, single if promised > NEARLY_THERE else None)
+        better = _better(case, tries, numbers, _worth(at, runs, numbers) + LITTLE_PROMISED)
+        if better is None:
+            break
+        gained = _worth(*better, numbers) - _worth(at, runs, numbers)
+        at, runs = better
+        if promised < NEARLY_THERE and gained > 0.5 * promised:
             break
     return at, likelihood(runs)
 
 
+def _worth(hypothesis: Hypothesis, runs: Sequence[Pass], numbers: Sequence[Number]) -> float:
+    return likelihood(runs) - 0.5 * sum(number.away(hypothesis) ** 2 for number in numbers)
+
+
+def _better(
+    case: Case, tries: Iterable[Hypothesis], numbers: Sequence[Number], least: float
+) -> tuple[Hypothesis, list[Pass]] | None:
+    """The first of the tries that is worth more than `least`, with its slopes: of the first these come along, as most steps end there."""
+    for place, tried in enumerate(tries):
+        runs = _passes(case, tried, numbers if place == 0 else ())
+        if runs is None or _worth(tried, runs, numbers) <= least:
+            continue
+        sloped = runs if place == 0 else _passes(case, tried, numbers)
+        return None if sloped is None else (tried, sloped)
+    return None
+
+
+def _passes(case: Case, hypothesis: Hypothesis, numbers: Sequence[Number]) -> list[Pass] | None:
+    """The filter with its slopes by the numbers; those at a bound that hold them have none."""
+    return passes(case, hypothesis, noises=[_nudged(hypothesis, number) for number in numbers])
+
+
+def _nudged(hypothesis: Hypothesis, number: Number) -> tuple[Hypothesis, float]:
+    x = number.of(hypothesis)
+    tried = [(number.put(hypothesis, x + by), by) for by in (NUDGE, -NUDGE)]
+    return next(((other, by) for other, by in tried if number.of(other) != x), tried[0])
+
+
 def _step(hypothesis: Hypothesis, numbers: Sequence[Number], g: Array, information: Array) -> Array:
-    """I^-1 g among the numbers that no bound keeps from going there."""
-    free, step = list(range(len(numbers))), np.zeros(len(numbers))
-    while free:
-        step[free] = np.linalg.solve(information[np.ix_(free, free)], g[free])
-        kept = [place for place in free if not _is_blocked(hypothesis, numbers[place], float(step[place]))]
-        if kept == free:
+    """I^-1 g among the numbers that no bound keeps from going there, none of them further than `_kept`."""
+    free, step = np.ones(len(numbers), dtype=bool), np.zeros(len(numbers))
+    while free.any():
+        left = g - information @ np.where(free, 0.0, step)
+        step[free] = np.linalg.solve(information[np.ix_(free, free)], left[free])
+        blocked = [_is_blocked(hypothesis, *told) for told in zip(numbers, step.tolist(), strict=True)]
+        near = np.where(blocked, 0.0, _kept(step))
+        kept, step = free & (near == step), near
+        if (kept == free).all():
             break
-        step[:], free = 0.0, kept
+        free = kept
     return step
+
+
+def _promised(g: Array, information: Array, step: Array) -> float:
+    return float(g @ step - 0.5 * step @ information @ step)
 
 
 def _is_blocked(hypothesis: Hypothesis, number: Number, step: float) -> bool:
@@ -104,45 +132,21 @@ def _tries(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone
 
 
 def _moved(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, share: float) -> Hypothesis:
-    """A share of one step, straight in the variances: where one of them makes all innovations it ends at the top."""
-    twice = 2.0 * np.log(10.0)
-    decades = np.log1p(np.maximum(twice * step, np.expm1(-twice * FURTHEST))) / twice
-    for number, change in zip(numbers, (share * np.minimum(decades, FURTHEST)).tolist(), strict=True):
+    """A share of one step, which `_kept` has kept near."""
+    decades = share * np.log1p(TWICE * step) / TWICE
+    for number, change in zip(numbers, decades.tolist(), strict=True):
         hypothesis = number.put(hypothesis, number.of(hypothesis) + change)
     return hypothesis
 
 
-def _linear(case: Case, hypothesis: Hypothesis, runs: Sequence[Pass], numbers: Sequence[Number]) -> tuple[Array, Array]:
-    """g and I of (2) by the numbers."""
-    found = thread_map(lambda number: _slope(case, hypothesis, runs, number), numbers)
-    changes = np.stack([change for _, change in found])
-    information = changes @ changes.T
-    curvature = np.diag(information)
-    nudges = np.array([nudge for (nudge, _), _ in found])
-    g = np.array([gained for (_, gained), _ in found]) / nudges + 0.5 * curvature * nudges
+def _kept(step: Array) -> Array:
+    """A step straight in the variances, where one of them makes all innovations it ends at the top; none goes further than FURTHEST."""
+    least, most = (np.expm1(TWICE * by) / TWICE for by in (-FURTHEST, FURTHEST))
+    return np.asarray(np.clip(step, least, most))
+
+
+def _linear(hypothesis: Hypothesis, runs: Sequence[Pass], numbers: Sequence[Number]) -> tuple[Array, Array]:
+    """g and I of (2) by the numbers, with what is known of them."""
     known = np.array([number.known[1] for number in numbers])
-    return g - [number.away(hypothesis) for number in numbers] / known, information + np.diag(1.0 / known**2)
-
-
-def _slope(
-    case: Case, hypothesis: Hypothesis, runs: Sequence[Pass], number: Number
-) -> tuple[tuple[float, float], Array]:
-    """A nudge of one number and what it gains in likelihood where that is smooth; and the slopes of ln s / sqrt(2) and of nu / sqrt(s), in
-    a row."""
-    none = np.zeros(2 * stacked(runs).size)
-    x = number.of(hypothesis)
-    for nudge in (NUDGE, -NUDGE):
-        there = number.put(hypothesis, x + nudge)
-        if number.of(there) == x:
-            continue  # at a bound
-        others = passes(case, there)
-        if others is None:
-            continue
-        ratio = np.concatenate([(other.s / one.s).ravel() for one, other in zip(runs, others, strict=True)])
-        before, after = stacked(runs), stacked(others)
-        changed = after * np.sqrt(np.nan_to_num(ratio, nan=1.0)) - before
-        smooth = (np.abs(np.log(ratio)) < JUMP) & (np.abs(changed) < FAR)
-        spread, changed = np.where(smooth, np.log(ratio), 0.0), np.where(smooth, changed, 0.0)
-        gained = -0.5 * float(np.sum(spread + np.where(smooth, after**2 - before**2, 0.0)))
-        return (nudge, gained), np.concatenate([spread / np.sqrt(2.0), changed]) / nudge
-    return (NUDGE, 0.0), none
+    away = np.array([number.away(hypothesis) for number in numbers])
+    return sum(run.score for run in runs) - away / known, sum(run.information for run in runs) + np.diag(1.0 / known**2)

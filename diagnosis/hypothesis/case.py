@@ -148,7 +148,9 @@ def beginning_of(case: Case) -> Case:
 
 
 def first_rows(case: Case, count: int) -> Case:
-    """The first `count` rows of each log."""
+    """The first `count` rows of each log; the case itself where none has more."""
+    if all(len(flight.log.t_s) <= count for flight in case.flights):
+        return case
     flights = []
     for flight in case.flights:
         since = flight.log.t_s[:count]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput, variance_stated
-from diagnosis.filter.kalman import Noise, Pass
+from diagnosis.filter.kalman import Noise, Pass, slope_of
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
@@ -211,10 +211,12 @@ def passes(
     hypothesis: Hypothesis,
     columns: Sequence[int] = (),
     *,
+    noises: Sequence[tuple["Hypothesis", float]] = (),
     slopes: bool = False,
     gains: bool = False,
 ) -> list[Pass] | None:
-    """The filter over all flights; None where it left all bounds on one."""
+    """The filter over all flights; None where it left all bounds on one. `noises` are hypotheses, each with another noise alone, and by how
+    much it is other: by these numbers of the noise the likelihood's slopes are asked."""
     compiled = case.library.compiled(hypothesis.effects)
 
     def over(flight: FilteredLog) -> Pass | None:
@@ -222,6 +224,7 @@ def passes(
         p = coefficients(case, compiled, here)
         filter_input = filter_input_under(case, compiled, flight, here)
         x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, here)
+        others = [(noise_of(case, compiled, flight, other.over(flight)), by) for other, by in noises]
         run = compiled.filter.run(
             filter_input,
             p,
@@ -229,6 +232,7 @@ def passes(
             noise,
             case.slots,
             columns=columns,
+            noises=[slope_of(noise, other, by) for other, by in others],
             keep_slopes=slopes,
             locked=flight.locked,
             keep_gains=gains,

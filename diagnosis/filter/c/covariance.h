@@ -76,8 +76,10 @@ static void predict_covariance(filter_state *at, substep *part)
 {
     double brought[AXES] = {0.0};
     part_speeds(at, part, brought);
+    part_speed_slopes(at, part);
     add_half(at, part);
     propagate(at, part->noise);
+    propagate_noise_slopes(at, part);
     return_speeds(at, part, brought);
 }
 

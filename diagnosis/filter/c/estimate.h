@@ -3,6 +3,7 @@
 #define ESTIMATE_H
 
 #include "follow.h"
+#include "noise_numbers.h"
 #include "slopes.h"
 #include "states.h"
 
@@ -22,6 +23,7 @@ typedef struct {
     awake_states states;
     follow_state following[N];
     filter_slopes slopes;
+    noise_slopes noises;
 } filter_state;
 
 /* Before the first reading: the start asked for, as sure as asked for. */
@@ -32,6 +34,7 @@ static void start(filter_state *at, filter_request *request)
     model_constants(request->p, at->c);
     wake(&at->states, request);
     start_slopes(&at->slopes, request);
+    start_noise_slopes(&at->noises, request, &at->states);
     for (int i = 0; i < N; i++) {
         at->following[i].z = -1.0;
         at->body.x[i] = request->x0[i];

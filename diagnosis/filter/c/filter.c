@@ -14,6 +14,7 @@
 #include "covariance.h"
 #include "mean.h"
 #include "measurement.h"
+#include "noise_slopes.h"
 #include "process_noise.h"
 #include "rest.h"
 #include "substep.h"
@@ -27,12 +28,14 @@ static void predict(filter_state *at, substep *part)
     part->before = at->body;
     find_noise(at, part);
     find_memory(at, part);
+    find_noise_slopes(at, part);
     doubt_friction(at, part);
     move_mean(at, part);
     find_rest(at, part);
     differentiate(at, part);
     find_transition(at, part);
     carry_slopes(at, part);
+    move_mean_slopes(at, part);
     predict_covariance(at, part);
 }
 
@@ -71,5 +74,6 @@ int32_t filter_run(filter_request *request)
             return (int32_t)step;
     }
     finish_slopes(&at.slopes, request);
+    finish_noise_slopes(&at.noises, request);
     return (int32_t)request->steps;
 }

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { MAX_COLUMNS = 256 };
+enum { MAX_COLUMNS = 256, MAX_NOISES = 32 };
 
 /* A filter input of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
  *
@@ -12,18 +12,21 @@ enum { MAX_COLUMNS = 256 };
  * is below 0 moves the state, but nothing is kept of it and it does not count in the likelihood. */
 typedef struct {
     int64_t steps;
-    int32_t columns, slots;
+    int32_t columns, slots, noises;
     const double *t_s, *u, *y, *r;           /* [steps], [steps][N_INPUTS], [steps][N_OUTPUTS] measured, their variances */
     const int64_t *row, *place;              /* [steps]: where the states go, [steps][N_OUTPUTS]: where the results go; or -1 */
     const double *p, *x0, *p0, *q;           /* [N_PARAMETERS]; [N_STATES]: start, its variance, noise intensity */
     const double *further;                   /* [steps][N_STATES] further variance over each step, or NULL */
     const double *forget;                    /* [N_STATES]: the rate, in 1/s, at which a state that is noise alone decays; 0 for others */
     const double *rub;                       /* [AXES]: how long, in s, the friction of an axis about its rest is in doubt */
+    const double *q_by, *p0_by, *forget_by;  /* [noises][N_STATES] slopes of those by numbers of the noise, */
+    const double *rub_by;                    /* [noises][AXES] */
     const uint8_t *locked;                   /* [AXES] */
     const int32_t *column, *slot;            /* [columns] parameters to differentiate by; [N_OUTPUTS] */
     double *w, *s, *dw, *x;                  /* [rows][slots] twice, [rows][slots][columns] or NULL, [rows][N_STATES] predicted */
     double *filtered;                        /* [rows][N_STATES] with the row's own measurement, or NULL */
     double *gram, *pull;                     /* [columns][columns] dw'dw and [columns] dw'w over all measurements */
+    double *score, *information;             /* [noises], [noises][noises]: slopes of the likelihood by those, Fisher's information */
     double *F, *K, *H;                       /* [steps][N_STATES^2], [steps][N_OUTPUTS][N_STATES] twice, or NULL */
     double stated_rad_s;                     /* of the fastest motion of the plant as its file states it */
     double rest_s;                           /* the usual step from row to row */

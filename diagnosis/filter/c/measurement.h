@@ -3,6 +3,7 @@
 #define MEASUREMENT_H
 
 #include "estimate.h"
+#include "noise_slopes.h"
 
 /* The gain of a reading, for whoever asks what answers to it later (respond.c). */
 static void keep_gain(const filter_request *r, int64_t reading, const double *K, const double *H)
@@ -52,6 +53,7 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
     }
     keep_gain(r, reading, K, H);
     const filter_correction given = {H, K, nu, 1.0 / sqrt(s), keep_innovation(r, reading, output, nu, s)};
+    correct_noise_slopes(at, given, PH, s);
     correct_slopes(&at->slopes, r, &at->states, output, at->j.E + output * N_PARAMETERS, given);
 }
 

@@ -3,6 +3,7 @@
 #ifndef PROCESS_NOISE_H
 #define PROCESS_NOISE_H
 
+#include "noise_slopes.h"
 #include "substep.h"
 
 /* What the substep brings each state that is awake, further variance that somebody knows of included. */
@@ -60,8 +61,9 @@ static void speed_column(const filter_state *at, int v, double h_s, int k, doubl
 /* White noise on a speed as it spreads within the substep, the integral of g(t) g(t)' dt noise / h with g(t) the speed's column of F over
  * t: by Gauss's rule at two instants, which is exact for the speed and its position. As a sum of squares it leaves no reading, however
  * sure and however far behind the speed, a variance below zero. */
-static void spread_noise(filter_state *at, int v, double h_s, double noise)
+static void spread_noise(filter_state *at, int axis, double h_s, double noise)
 {
+    const int v = AXIS_VELOCITY[axis];
     for (int k = 0; k < INSTANTS; k++) {
         double g[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0};
         speed_column(at, v, h_s, k, g);
@@ -71,6 +73,7 @@ static void spread_noise(filter_state *at, int v, double h_s, double noise)
                 if (g[i] != 0.0 && FILLED(at->states, b))
                     ((block *)at->P[i])[b] += 0.5 * noise * g[i] * ((const block *)g)[b];
         }
+        spread_noise_slopes(at, axis, g);
     }
 }
 

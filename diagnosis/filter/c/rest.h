@@ -2,6 +2,7 @@
 #ifndef REST_H
 #define REST_H
 
+#include "noise_slopes.h"
 #include "process_noise.h"
 #include "quick_exp.h"
 #include "substep.h"
@@ -9,7 +10,7 @@
 #define UNSURE 10.0 /* times what friction stops in a step, beyond which a speed's spread is no rest */
 
 /* The friction of each axis, and its doubt as noise on the speed: about v = 0 its level is in doubt for `rub` seconds. */
-static void doubt_friction(const filter_state *at, substep *part)
+static void doubt_friction(filter_state *at, substep *part)
 {
     double sign[AXES];
     for (int a = 0; a < AXES; a++) {
@@ -21,8 +22,11 @@ static void doubt_friction(const filter_state *at, substep *part)
         const int v = AXIS_VELOCITY[a];
         const double rub = at->request->rub[a], square = part->friction[a] * part->friction[a];
         const double rest_s = at->request->rest_s, width = square * rest_s * rest_s + at->P[v][v];
-        if (square > 0.0 && rub > 0.0)
-            part->noise[v] += square * part->h_s * rub * quick_exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
+        if (!(square > 0.0 && rub > 0.0))
+            continue;
+        const double a_second = square * part->h_s * quick_exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
+        part->noise[v] += rub * a_second;
+        doubt_slopes(at, a, a_second, width + 1e-12);
     }
 }
 
@@ -84,9 +88,10 @@ static void return_speeds(filter_state *at, const substep *part, const double *b
         const int v = AXIS_VELOCITY[a];
         if (part->rests[a]) {
             at->P[v][v] += brought[a];
+            bring_speed_slopes(at, a);
             scale_column(at, v, 1.0 / sqrt(usual));
         } else if (brought[a] > 0.0)
-            spread_noise(at, v, part->h_s, brought[a]);
+            spread_noise(at, a, part->h_s, brought[a]);
     }
 }
 

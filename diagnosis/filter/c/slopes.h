@@ -60,9 +60,9 @@ static void multiply(filter_slopes *at, const filter_request *r)
         for (int b = 0; b <= k / BLOCK; b++) {
             block sum[4] = {{0.0}};
             for (int m = 0; m < at->pending; m++)
-                for (int i = 0; i < 4; i++)
+                UNROLLED for (int i = 0; i < 4; i++)
                     sum[i] += left[m * BLOCK + i] * at->waiting[b][m];
-            for (int i = 0; i < 4; i++)
+            UNROLLED for (int i = 0; i < 4; i++)
                 at->gram[b][k + i] += sum[i];
         }
     }

@@ -11,7 +11,7 @@ EMPTY = np.zeros((0, 0))
 
 
 def a_pass(w: np.ndarray) -> Pass:
-    return Pass(w, np.ones_like(w), None, EMPTY, EMPTY, 0.0, EMPTY, np.zeros(0))
+    return Pass(w, np.ones_like(w), None, EMPTY, EMPTY, 0.0, EMPTY, np.zeros(0), np.zeros(0), EMPTY)
 
 
 def test_white_innovations_foretell_nothing_beyond_chance() -> None:

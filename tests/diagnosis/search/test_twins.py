@@ -72,14 +72,15 @@ def test_of_two_names_of_one_thing_a_diagnosis_asks_for_one() -> None:
 
 
 def test_a_smooth_torque_is_noise_and_no_lag_of_the_sensor(late: Case) -> None:
-    # White noise prefers the sensor's lag, which smooths it, to the drive's, which is there. With the torque as noise this hardly speaks
-    # against the drive, but for the cost of its second pole: before and behind a nearly linear plant a lag is one.
+    # White noise prefers the sensor's lag, which smooths it, to the drive's, which is there. With the torque as noise this speaks against
+    # the drive by less than what tells two names apart, the cost of its second pole with it: before and behind a nearly linear plant a lag
+    # is one.
     sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
     assert sensor.evidence - drive.evidence > 10.0
     sensor, drive = with_noise_beside(late, [sensor, drive])
     assert drive.effects == ("input.lag",)
     assert "arm.gust" in drive.fit.hypothesis.effects
-    assert sensor.evidence - drive.evidence < 3.0 + decisions.SHAPE_COST
+    assert sensor.evidence - drive.evidence < decisions.TAKEN_IN
 
 
 def test_what_is_fitted_later_gets_the_noise_of_what_it_is_compared_with(late: Case) -> None:
