@@ -11,13 +11,13 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import COLOUR_COST
-from diagnosis.fit.foretold import foretold_nats
+from diagnosis.fit.foretold import foretold_of
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.process_noise import white_noise
 from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.hypothesis.case import Case, beginning_of
-from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from diagnosis.library.reading_noise import ReadingNoise
 from sim.effect import Effect, Role
 
@@ -49,7 +49,7 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
     """What was fitted with all noise with a memory that the logs tell of: each must gain what its two numbers cost in evidence, and is not
     sought where the innovations foretell no more."""
     hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
-    left = _foretold(case, hypothesis)
+    left = foretold_of(case, hypothesis)
     for colour in _colours(case):
         if left < COLOUR_COST:
             break
@@ -64,13 +64,8 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
             start, there = _likeliest(case, start, [colour], white_noise(case, start))
         if colour.of(start) is not None and there > value + COLOUR_COST:
             hypothesis, value = start, there
-            left = _foretold(case, hypothesis)
+            left = foretold_of(case, hypothesis)
     return hypothesis
-
-
-def _foretold(case: Case, hypothesis: Hypothesis) -> float:
-    runs = passes(case, hypothesis)
-    return 0.0 if runs is None else foretold_nats(runs)
 
 
 def coloured_noise_of(case: Case, hypothesis: Hypothesis) -> Hypothesis:

@@ -14,10 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.kalman import Pass
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 
 Array = NDArray[np.float64]
 BLOCKS = ((1, 1), (2, 2), (3, 3), (4, 4), *((2**k + 1, 2 ** (k + 1)) for k in range(2, 9)))  # rows back, from and to
 RIDGE = 1e-9  # of each regressor's square, so that an output that is never read does no harm
+
+
+def foretold_of(case: Case, hypothesis: Hypothesis) -> float:
+    """What the innovations of a hypothesis foretell; 0 where the filter left all bounds."""
+    runs = passes(case, hypothesis)
+    return 0.0 if runs is None else foretold_nats(runs)
 
 
 def foretold_nats(runs: Sequence[Pass]) -> float:

@@ -7,11 +7,11 @@ from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.foretold import foretold_nats
+from diagnosis.fit.foretold import foretold_of
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, noise_on, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, noise_on
 from diagnosis.search.exchange import is_twin
 from diagnosis.validate.fitted_logs import FittedLogs
 from jobs.thread_map import thread_map
@@ -173,8 +173,7 @@ def hardly_told(case: Case, first: FittedHypothesis, others: Sequence[FittedHypo
 
 
 def _foretold(case: Case, fitted: FittedHypothesis) -> float:
-    runs = passes(case, fitted.fit.hypothesis)
-    return 0.0 if runs is None else foretold_nats(runs)
+    return foretold_of(case, fitted.fit.hypothesis)
 
 
 def _with_memory(
