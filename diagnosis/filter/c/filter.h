@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { MAX_COLUMNS = 256, MAX_NOISES = 32 };
+enum { MAX_COLUMNS = 256, MAX_NOISES = 64 };
 
 /* A filter input of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
  *
