@@ -119,7 +119,7 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
 
     They are asked beside single effects first, as a rig that yields is searched in vain by a plant that sticks: there they must explain
     a good part of what an effect does, as what a second effect would explain often looks like yielding, and what is then found must
-    still need them.
+    still need them. Beside what was found they must explain a share of it that may change a name, as all is sought anew then.
     """
     begun = alone_of(seen)
     first = begun.best(decisions.ASKED)
@@ -129,7 +129,8 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):
             return again, further
     found = search(seen.case, seen.case.library.candidates, begun)
-    seen, again = _yielding(seen, found.fitted[: decisions.ASKED])
+    gained = found.fitted[0].evidence - seen.retuned.evidence
+    seen, again = _yielding(seen, found.fitted[: decisions.ASKED], decisions.NEARLY_AS_GOOD * gained)
     if again is None:
         return seen, found
     further = _searched(again)
