@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from design.linearise import LinearPlant
+from design.linear_plant import LinearPlant
 
 Array = NDArray[np.float64]
 

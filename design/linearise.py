@@ -1,12 +1,12 @@
 """The linearised plant at an operating point, eqs (17)-(19), and its single-input subsystems, one a loop."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from design.linear_plant import LinearPlant, minimal
 from design.structure import measured_axis
 from records.errors import BadInput
 from records.loops import LOOPS, Loop
@@ -17,15 +17,6 @@ from sim.kernel.reference import reference
 from sim.model import Model
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class LinearPlant:
-    """dx/dt = A x + B u, y = C x of deviations from an operating point; shapes (n, n), (n, m), (r, n)."""
-
-    A: Array
-    B: Array
-    C: Array
 
 
 def linearise(bound: BoundPlant, point: OperatingPoint) -> LinearPlant:
@@ -40,7 +31,8 @@ def subsystem(bound: BoundPlant, linear: LinearPlant, loop: Loop, loops: Sequenc
     """The part of `linear` from the loop's input to its angle, eq (20) or (21), without what other loops hold, an axis or, where none
     moves, the state that they measure: those that the input reaches and that reach the angle, in the plant's order.
 
-    Raises BadInput where the input does not reach the angle here, or through more states than a law can be made for.
+    Raises BadInput where the input does not reach the angle here, or through more states than a law can be made for. Of equal parts side
+    by side it is what they do together.
     """
     model = bound.model
     column = [symbol.name for symbol in model.inputs].index(loop.input)
@@ -50,18 +42,16 @@ def subsystem(bound: BoundPlant, linear: LinearPlant, loop: Loop, loops: Sequenc
     coupling = (linear.A != 0.0) & free & free[:, np.newaxis]
     reached = _closure(coupling, (linear.B[:, column] != 0.0) & free)
     rows = np.flatnonzero(reached & _closure(coupling.T, (linear.C[output] != 0.0) & free))
-    if not 1 <= len(rows) <= ORDERS[-1]:
+    between = LinearPlant(linear.A[np.ix_(rows, rows)], linear.B[rows][:, [column]], linear.C[[output]][:, rows])
+    part = minimal(between) if len(rows) else between
+    if not 1 <= len(part.A) <= ORDERS[-1]:
         states = ", ".join(str(model.states[row]) for row in rows) or "none"
         raise BadInput(
             f"{loop.axis} axis", f"plant {bound.plant.name!r}", f"{len(rows)} states between {loop.input} and {loop.output}: {states}",
             f"1 to {ORDERS[-1]} that the input moves and that move the output",
             "choose another operating range, or another input for this loop",
         )  # fmt: skip
-    return LinearPlant(
-        A=linear.A[np.ix_(rows, rows)],
-        B=linear.B[np.ix_(rows, np.array([column]))],
-        C=linear.C[np.ix_(np.array([output]), rows)],
-    )
+    return part
 
 
 def of_loops(bound: BoundPlant, linear: LinearPlant, loops: Sequence[Loop]) -> LinearPlant:

@@ -129,7 +129,9 @@ def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSett
     states, poles = len(plant.a) - 1, len(wishes.poles_rad_s)
     if poles != 2 * states:
         raise BadInput(
-            "poles", where, f"{poles} poles of a loop of {states} state{'s' * (states > 1)}", f"{2 * states} poles",
+            "poles", where,
+            f"{poles} poles of a loop of {states} state{'s' * (states > 1)} that its input moves and its output shows",
+            f"{2 * states} poles",
             f"give plant and controller {states} each in poles_rad_s",
         )  # fmt: skip
     wanted, free = characteristic(poles_z(wishes.placed_rad_s, plant.sample_period_s)), FREE_DEGREES[wishes.free_degree]

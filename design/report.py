@@ -15,7 +15,8 @@ from design.analysis.migration import Migration, ScheduledAxis, SlowestPole, mig
 from design.analysis.rounding import FLOAT32, Rounding
 from design.direct_form import DeltaForm
 from design.discretise import SampledPlant, sample
-from design.linearise import LinearPlant, linearise, of_loops, subsystem
+from design.linear_plant import LinearPlant
+from design.linearise import linearise, of_loops, subsystem
 from design.loop import PlantPolynomials, Poles, controller_poles, open_loop, plant_polynomials
 from design.operating_points import DesignPoints, equilibria, grid, rest_V
 from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of

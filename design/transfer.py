@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.discretise import SampledPlant, sample
-from design.linearise import LinearPlant
+from design.linear_plant import LinearPlant
 from design.loop import plant_polynomials
 from records.errors import VerificationFailed
 

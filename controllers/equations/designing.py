@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.discretise import SampledPlant, sample
-from design.linearise import LinearPlant, linearise, of_loops, subsystem
+from design.linear_plant import LinearPlant
+from design.linearise import linearise, of_loops, subsystem
 from design.operating_points import equilibria, grid
 from design.settings import AxisSettings, DesignSettings
 from design.table import frame_entries

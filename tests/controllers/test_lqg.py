@@ -9,7 +9,7 @@ from controllers.coupled import coupled_poles, coupled_sensitivity
 from controllers.lqg_gains import Gains, Speeds, gains_at
 from controllers.lqg_loop import controller_at, open_loop
 from design.discretise import sample
-from design.linearise import LinearPlant
+from design.linear_plant import LinearPlant
 from design.loop import PlantPolynomials, closed_loop_poles, plant_polynomials
 from records.table import changed_axis
 from sim.loop import fly

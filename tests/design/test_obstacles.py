@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from design.discretise import sample
-from design.linearise import LinearPlant
+from design.linear_plant import LinearPlant
 from design.loop import plant_polynomials
 from design.obstacles import advice
 from design.settings import read_settings
@@ -106,11 +106,25 @@ def test_a_zero_is_told_too_as_a_faster_loop_wants_a_pole_near_it() -> None:
     assert float(told.split("its zeros at ")[1].split(" rad/s")[0]) == pytest.approx(-2.0, rel=0.02)
 
 
-def test_a_motion_that_the_output_does_not_show_is_told_with_its_speed(tmp_path: Path) -> None:
-    """Truth: two equal reels on a tape; what stretches it is their difference, and as one they run out at -b/J = -2 rad/s."""
-    path = REELS.write(tmp_path, "reels")
-    wishes = "poles_rad_s = [-3, -4, -5, -6, -18, -22]\nreference_min_m = 0.001\nreference_max_m = 0.02\n"
+def reels(folder: Path, poles_rad_s: list[int], own: OwnPlant = REELS) -> Any:
+    """The law that holds the stretch of a tape between two reels by the motor of one."""
+    path = own.write(folder, "reels")
+    wishes = f"poles_rad_s = {poles_rad_s}\nreference_min_m = 0.001\nreference_max_m = 0.02\n"
     path.write_text(f"{path.read_text()}\n[design.tension]\ninput = 'ub_V'\n{wishes}")
-    reels = bind(load_plant(path))
-    with pytest.raises(BadInput, match=r"its motion at -2 rad/s has a pole and a zero in one place"):
-        design(reels, read_settings(reels))
+    bound = bind(load_plant(path))
+    return design(bound, read_settings(bound))
+
+
+def test_a_motion_that_the_output_does_not_show_and_that_dies_away_is_left_to_itself(tmp_path: Path) -> None:
+    """Truth: two equal reels on a tape; what stretches it is their difference, and as one they run out at -b/J = -2 rad/s."""
+    _, report = reels(tmp_path, [-3, -4, -18, -22])
+    assert report.axes[0].after_rounding.worst_rad_s == pytest.approx(-3.0, abs=0.1)
+    with pytest.raises(BadInput, match="6 poles of a loop of 2 states that its input moves and its output shows"):
+        reels(tmp_path, [-3, -4, -5, -6, -18, -22])
+
+
+def test_one_that_grows_is_told_with_its_speed(tmp_path: Path) -> None:
+    """Truth: reels that are pushed on as they turn run away as one, at +2 rad/s, and no stretch of the tape shows it."""
+    pushed = OwnPlant({**REELS.parameters, "b": (-2e-3, 2e-4, "N m s")}, REELS.sensors, REELS.body)
+    with pytest.raises(BadInput, match=r"its motion at 2 rad/s has a pole and a zero in one place"):
+        reels(tmp_path, [-3, -4, -5, -6, -18, -22], pushed)

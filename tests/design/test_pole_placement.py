@@ -6,7 +6,8 @@ import pytest
 from design.analysis.margins import margins
 from design.direct_form import DirectForm, controller_poles_z, to_delta, to_direct
 from design.discretise import sample
-from design.linearise import LinearPlant, linearise, subsystem
+from design.linear_plant import LinearPlant
+from design.linearise import linearise, subsystem
 from design.loop import closed_loop_poles, open_loop, plant_polynomials, slowest
 from design.pole_placement import (
     FREE_DEGREES,
