@@ -74,7 +74,7 @@ def _legs(
     bound: BoundPlant, table: FlownTable, outputs: tuple[int, ...], point: OperatingPoint
 ) -> tuple[list[tuple[Leg, ...]], float]:
     """Each loop's reference from where it rests by one step towards its middle, and how long the flight takes [s]."""
-    legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point.x0)]
+    legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point)]
     at_s = STEP_AT_S
     for place, axis in zip(outputs, table.axes, strict=True):
         (held,) = legs[place]

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.table import Table
 from sim.bind import BoundPlant
-from sim.equilibrium import equilibrium, rest_with
+from sim.equilibrium import OperatingPoint, equilibrium, rest_with
+from sim.kernel.reference import reference
 from sim.wiring import wiring
 
 Array = NDArray[np.float64]
@@ -79,7 +80,7 @@ def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
     wires = wiring(bound, table.loops)
     middle_rad = [0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes]
     point = rest_with(bound, wires.outputs, middle_rad, wires.inputs)
-    legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point.x0)]
+    legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point)]
     at_s = 0.0
     for place, axis, centre_rad, loop in zip(wires.outputs, table.axes, middle_rad, table.loops, strict=True):
         half_rad, held_s = 0.5 * (axis.reference_max_rad - axis.reference_min_rad), hold_s(table, axis, loop.axis)
@@ -102,10 +103,11 @@ def hold_s(table: Table[Any], axis: Any, name: str) -> float:
     return min(max(wanted_s, SHORTEST_HOLD_S), longest_s)
 
 
-def resting_outputs(bound: BoundPlant, x0: Array) -> list[float]:
-    """What the outputs read at rest where they are states; 0 elsewhere."""
-    states = list(bound.model.states)
-    return [float(x0[states.index(y)]) if y in states else 0.0 for y in bound.model.outputs.values()]
+def resting_outputs(bound: BoundPlant, point: OperatingPoint) -> list[float]:
+    """What the outputs read at rest (outputs,), each in its own unit."""
+    no_friction = np.zeros(len(bound.model.axes))
+    read: list[float] = reference(bound.model).outputs(0.0, point.x0, point.u0, bound.p, no_friction).tolist()
+    return read
 
 
 def hop(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:

@@ -137,7 +137,20 @@ return Model(
 )
 """,
 )
-# Two such bodies, heat flowing between them.
+# Two such bodies, heated alike, of which the mean is measured: no output tells them from one.
+TWO_ALIKE = OwnPlant(
+    HEATER.parameters,
+    HEATER.sensors,
+    """
+T1, T2, heat = symbol("T1_K"), symbol("T2_K"), symbol("heat_W")
+return Model(
+    name="NAME", states=(T1, T2), inputs=(heat,), outputs={"T_K": (T1 + T2) / 2}, parameters=PARAMETERS,
+    rates={T: (heat - p["G"] * T) / p["C"] for T in (T1, T2)}, axes=(), input_limits={heat: (0, 60)},
+    places=Places(inputs={"heater": InputPlace(heat, "W", 60.0)}, sensors={"probe": SensorPlace("T_K", "K", 50.0)}),
+)
+""",
+)
+# Two bodies, each with its own resistor, heat flowing between them.
 TWO_HEATERS = OwnPlant(
     {"C": (30.0, 2.0, "J K^-1"), "G": (0.3, 0.03, "W K^-1"), "H": (0.2, 0.02, "W K^-1")},
     {"T1_K": 0.0625, "T2_K": 0.0625},

@@ -15,6 +15,7 @@ from controllers.lqg_gains import wished_speeds
 from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.settings import read_settings
+from design.table import design
 from records.errors import BadInput
 from records.plant import load_plant
 from records.quality import OVERSHOOT
@@ -24,7 +25,7 @@ from rig.programming.image import build_firmware
 from sim.bind import BoundPlant, bind
 from sim.tracking import left
 from tests.other_plants import plant_file
-from tests.own_plants import PLAIN, OwnPlant
+from tests.own_plants import HEATER, PLAIN, TWO_ALIKE, OwnPlant
 from tests.soak import SOAK
 from twinlaw.workflows.chain.flying import fly_double, fly_host
 from twinlaw.workflows.new_plant import plant_texts
@@ -218,6 +219,32 @@ def test_a_slow_zero_keeps_the_filter_of_the_reference_and_no_step_overshoots(tm
     assert table.axes[0].prefilter_time_constant_s == 20.0
     assert max(entry.overshoot for entry in fly_double(room, table).tracking) <= OVERSHOOT.green
     assert designed("lqg", "aeroshield").axes[0].prefilter_time_constant_s == 0.0
+
+
+ALIKE_WISHES = """
+[design]
+sample_period_s = 0.05
+[design.body]
+poles_rad_s = [-0.2, -0.25]
+prefilter_time_constant_s = 2.0
+reference_min_K = 10.0
+reference_max_K = 50.0
+"""
+
+
+def test_two_parts_alike_that_no_output_tells_from_one_have_its_law(tmp_path: Path) -> None:
+    # Truth: both temperatures are always equal, so the plant is the one body; all coefficients are, to the digits that a table keeps.
+    tables = []
+    for name, own in (("one", HEATER), ("two", TWO_ALIKE)):
+        path = own.write(tmp_path / name, "body")
+        path.write_text(path.read_text() + ALIKE_WISHES)
+        bound = bind(load_plant(path))
+        settings = read_settings(bound)
+        designed_by_all = [CONTROLLERS[controller].design(bound, settings) for controller in NAMES]
+        for controller, table in zip(NAMES, designed_by_all, strict=True):
+            demand_settling(bound, table, CONTROLLERS[controller].float_law(table), "any plant")
+        tables.append((design(bound, settings)[0].axes, designed_by_all[1].axes))
+    assert tables[0] == tables[1]
 
 
 def test_loops_that_push_one_another_stay_with_their_references_on_spread_plants() -> None:

@@ -79,7 +79,7 @@ def closed_loop_sweeps(
     for place, loop in enumerate(table.loops):
         swept = np.zeros((t_s.size, len(rest)))
         swept[:, place] = sweep_input(sweep, t_s, amplitudes[place])
-        references = np.tile(resting_outputs(bound, point.x0), (t_s.size, 1))
+        references: Array = np.tile(resting_outputs(bound, point), (t_s.size, 1))
         references[:, list(wires.outputs)] = rest
         law: Controller = FloatLaw(table)
         if on == "references":
