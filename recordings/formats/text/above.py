@@ -13,6 +13,9 @@ from recordings.units import known
 HEADING_LINES = 8  # before the numbers, among which the header is: below it stand units and remarks, not more
 COMMENTS = ("#", "%", "//")
 UNIT_LABELS = frozenset(("unit", "units"))
+# What a spreadsheet writes for a cell that it cannot compute, in any language: #DIV/0!, #¿NOMBRE?, #N/A, #NV; ### where it is too wide.
+_ERROR_FIRST = re.compile(r"\s*(#[^\s,;|a-z]*([!?]|N/?[ADV])|#{2,}(?=[,;\t|]))(?P<others>[\s,;|].*|)")
+_SIGNS = re.compile(r"[,;\t|]")
 _LABELLED = re.compile(r"(?:(?P<label>[A-Z][A-Za-z ]*):(?P<text>.*))?")  # or an empty cell, above times
 _KIND = re.compile(
     r"[fiu]\d{1,2}|float(32|64)?|double|real|lreal|u?s?d?int\d*|bool(ean)?"
@@ -69,15 +72,23 @@ def headings_above(before: Sequence[Line], way: tuple[str, str], width: int, wid
     told += [
         f"line {left.number} is passed over: {left.text[:60]!r}, {len(trimmed(split(left.text, separator)))} cells of {width}"
         for left in before
-        if left.number > line.number
-        and left is not of_units
-        and left not in labelled
-        and not left.text.lstrip().startswith(COMMENTS)
+        if left.number > line.number and left is not of_units and left not in labelled and not is_comment(left.text)
     ]
     stated, numbers = units_and_numbers([split(one.text, separator) for one in before], names, decimal)
     if stated:
         told.append(f"units of LabVIEW's header: {', '.join(unit or '-' for unit in stated)}")
     return Above(names, stated or tuple(units), tuple(told), {**singles, **numbers})
+
+
+def is_comment(text: str) -> bool:
+    """Whether a line is a remark; one that begins with a spreadsheet's error is a row where all else are numbers or nothing."""
+    if not text.lstrip().startswith(COMMENTS):
+        return False
+    row = _ERROR_FIRST.fullmatch(text)
+    if row is None:
+        return True
+    others = _SIGNS.split(row["others"]) if _SIGNS.search(row["others"]) else row["others"].split()
+    return not all(_is_no_name(cell.strip()) for cell in others)
 
 
 def _above_nothing(names: Line, units: Line, way: tuple[str, str], width: int) -> dict[str, float]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recordings.formats.clocks import with_clocks, with_clocks_in_front
-from recordings.formats.text.above import COMMENTS
+from recordings.formats.text.above import is_comment
 from recordings.formats.text.body import without_cut_cell, without_headers, without_messages, without_text_below
 from recordings.formats.text.cells import (
     from_the_first_s,
@@ -117,12 +117,8 @@ def _lines(text: str, skip: int) -> tuple[list[Line], list[Line], str | None]:
     numbered = _with_whole_cells(numbered) if '"' in text else numbered
     stated = re.fullmatch(r'"?sep=(.)"?', numbered[0].text.strip()) if numbered else None
     filled = [line for line in numbered[1 if stated else 0 :] if line.text.strip()]
-    comments = [line for line in filled if line.text.lstrip().startswith(COMMENTS)]
-    return (
-        [line for line in filled if not line.text.lstrip().startswith(COMMENTS)],
-        comments,
-        stated[1] if stated else None,
-    )
+    comments = [line for line in filled if is_comment(line.text)]
+    return [line for line in filled if not is_comment(line.text)], comments, stated[1] if stated else None
 
 
 def _with_whole_cells(lines: Sequence[Line]) -> list[Line]:

@@ -150,6 +150,50 @@ def test_what_a_spreadsheet_writes_for_no_value_in_any_language_is_none(cell: st
     assert np.flatnonzero(np.isnan(psi_rad)).tolist() == [7]
 
 
+@pytest.mark.parametrize("separator", [",", ";", "\t", " "])
+@pytest.mark.parametrize(
+    "cell",
+    [
+        "#DIV/0!",
+        "#N/A",
+        "#REF!",
+        "#NAME?",
+        "#VALUE!",
+        "#NUM!",
+        "#NULL!",
+        "#NV",
+        "#N/D",
+        "#WERT!",
+        "#¡DIV/0!",
+        "#¿NOMBRE?",
+        "#ERROR!",
+    ],
+)
+def test_a_row_that_begins_with_a_spreadsheet_s_error_lacks_that_cell_only(
+    cell: str, separator: str, tmp_path: Path
+) -> None:
+    """Truth: the row stands at its time, the last cell, with the other output; none is a comment."""
+    rows = [f"{10 + t:.6f},{20 - t:.6f},{5 + t:.6f},1.800000,{t:.2f}" for t in T_S]
+    rows[7] = f"{cell},{rows[7].partition(',')[2]}"
+    table = "\n".join(["psi_rad,phi_rad,u_M_V,u_T_V,t_s", *rows]) + "\n"
+    (tmp_path / "run.csv").write_text(table.replace(",", separator), encoding="utf-8")
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    assert np.flatnonzero(np.isnan(done.log.column("psi_rad"))).tolist() == [7]
+    np.testing.assert_allclose(done.log.column("phi_rad"), 20.0 - T_S, atol=1e-6)
+    assert not any("comment" in told for told in done.found)
+
+
+@pytest.mark.parametrize(
+    "remark", ["#WARNING! the rotor stands", "#NOTE, begin, of, the, step", "# 1,2,3,4,5", "#ERROR", "## 3 4"]
+)
+def test_a_remark_between_rows_is_none_of_them(remark: str, tmp_path: Path) -> None:
+    rows = _rows()
+    (tmp_path / "run.csv").write_text(HEAD + "\n".join([*rows[:7], remark, *rows[7:]]) + "\n")
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.column("psi_rad"), 10.0 + T_S, atol=1e-6)
+    assert "1 line of comment" in done.found
+
+
 @pytest.mark.parametrize("minus", ["−", "–", "﹣", "－"])
 def test_a_typesetter_s_minus_is_a_minus(minus: str, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text(HEAD + "\n".join(_rows(r7=f"{minus}3.5")) + "\n", encoding="utf-8")
