@@ -3,7 +3,7 @@
 import re
 import unicodedata
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import nan, pi
 
 from records.text.units import dimension
@@ -22,7 +22,7 @@ class Unit:
     `words` are spellings in full, without accents: in any case, and at the end of a name too (psi_degrees). Of its `symbols` only
     `suffixes`, and those with letters beyond ASCII, end a name (psi_deg, t_µs): fewer, as u_in is no length in inches and x_min no
     minutes. `per_turn` marks a count of an encoder, whose factor is 2 pi over the counts of a turn. A unit of several meanings says them
-    in `either`, and has no factor.
+    in `either`, and has no factor. `zero` is where it counts from, in the SI unit: what is one of it over a time counts from 0.
     """
 
     si: str
@@ -32,6 +32,7 @@ class Unit:
     words: tuple[str, ...] = ()
     per_turn: bool = False
     either: str = ""
+    zero: float = 0.0
 
 
 def _words(text: str) -> tuple[str, ...]:
@@ -117,6 +118,13 @@ UNITS = (
     Unit("N m", 1.0, ("Nm", "N*m", "N.m"), ("Nm",), _words("newtonmeter newtonmeters newtonmetre")),
     Unit("N m", 1e-3, ("mNm", "mN*m", "mN.m", "Nmm", "N*mm"), ("mNm", "Nmm"), _words("millinewtonmeter")),
     Unit("N m", 1e-2, ("Ncm", "N*cm", "N.cm"), ("Ncm",)),
+    Unit("K", 1.0, ("K",), ("K",), _words("kelvin kelvins")),
+    Unit("K", 1e-3, ("mK",), ("mK",), _words("millikelvin")),
+    Unit("K", 1.0, ("degC", "°C", "ºC", "℃", "C"), ("degC",), _words("celsius centigrade gradcelsius"), zero=273.15),
+    Unit("K", 5.0 / 9.0, ("degF", "°F", "ºF", "℉"), ("degF",), _words("fahrenheit"), zero=273.15 - 32.0 * 5.0 / 9.0),
+    Unit("W", 1.0, ("W",), ("W",), _words("watt watts")),
+    Unit("W", 1e-3, ("mW",), ("mW",), _words("milliwatt milliwatts")),
+    Unit("W", 1e3, ("kW",), ("kW",), _words("kilowatt kilowatts")),
     Unit(
         "s",
         1.0,
@@ -161,7 +169,11 @@ UNITS = (
     Unit("1", 1e-3, ("‰",), (), _words("permille permil promille")),
     Unit("1", 1e-6, ("ppm",), ("ppm",)),
 )
-_RATES = {"rad": "rad/s", "rad/s": "rad/s^2", "m": "m/s", "m/s": "m/s^2"}  # what each is over a second
+# What each is over a second.
+_RATES = {unit: f"{unit}/s" for unit in ("rad", "m", "V", "A", "N", "N m", "K", "W")} | {
+    "rad/s": "rad/s^2",
+    "m/s": "m/s^2",
+}
 _BY_SPELLING: Mapping[str, Unit] = {spelling: unit for unit in UNITS for spelling in (*unit.symbols, *unit.words)}
 _BY_SUFFIX: Mapping[str, Unit] = {
     suffix: unit
@@ -169,7 +181,7 @@ _BY_SUFFIX: Mapping[str, Unit] = {
     for suffix in (*unit.suffixes, *unit.words, *(s for s in unit.symbols if not s.isascii()))
 }
 _OVER = re.compile(r"(.+)(?:/|per|pro|par|por)([^/^\d]+)(?:\^?([12]))?")  # deg/s^2, deg/s/s, Grad pro Sekunde
-_ENDING_OVER = re.compile(r"(.+?)_(?:(?:per|pro)_)?([A-Za-z]+)([2]?)")  # deg_s, Grad_pro_s, mm_s2
+_ENDING_OVER = re.compile(r"(.+?)_((?:per|pro)_)?([A-Za-z]+)([2]?)")  # deg_s, Grad_pro_s, mm_s2
 _TIMES_INVERSE = re.compile(r"(.+?)\*?(ms|s|sec|min|h)\^?-([12])")  # rad*s^-1, and rad s-1 without its blank
 _SUPERSCRIPTS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "·": "*", "⋅": "*"})
 
@@ -205,7 +217,7 @@ def _rate(upper: Unit, lower: Unit, power: int) -> Unit | None:
     """`upper` over a time `lower`, so many times; None for what is no rate."""
     if lower.si != "s" or upper.si not in _RATES:
         return None
-    over = replace(upper, si=_RATES[upper.si], factor=upper.factor / lower.factor, symbols=(), suffixes=(), words=())
+    over = Unit(_RATES[upper.si], upper.factor / lower.factor, (), per_turn=upper.per_turn, either=upper.either)
     return over if power == 1 else _rate(over, lower, power - 1)
 
 
@@ -241,8 +253,10 @@ def _ending(suffix: str) -> Unit | None:
     plain = _plain(suffix)
     found = _BY_SUFFIX.get(plain) or (_BY_SUFFIX.get(plain.lower()) if len(plain) > 1 else None)
     match = None if found else _ENDING_OVER.fullmatch(plain)
-    upper, lower = (_ending(match[1]), _ending(match[2])) if match else (None, None)
-    return found or (_rate(upper, lower, int(match[3] or 1)) if match and upper and lower else None)
+    if match is None:
+        return found
+    upper, lower = _ending(match[1]), _spelt(match[3]) if match[2] else _ending(match[3])  # `per_min` is no least value
+    return _rate(upper, lower, int(match[4] or 1)) if upper and lower else None
 
 
 def unit_of_clock(name: str) -> str:
@@ -263,6 +277,12 @@ def unit_of_suffix(suffix: str) -> Unit:
     return unit
 
 
+def with_own_zero(spelling: str) -> Unit | None:
+    """The unit of a spelling that counts from elsewhere than 0 of its SI unit, as degC does; None for any other."""
+    unit = known(spelling) or _ending(spelling)
+    return unit if unit and unit.zero else None
+
+
 def factor_to(si: str, spelling: str, per_turn: float | None) -> float:
     """How many of the SI unit `si` one of `spelling` is; raises ValueError with what is missing, in a few words."""
     unit = known(spelling) or _ending(spelling)
@@ -272,6 +292,10 @@ def factor_to(si: str, spelling: str, per_turn: float | None) -> float:
         raise ValueError(f"no factor from {spelling} to {si}")
     if unit.either:
         raise ValueError(f"{spelling} may be {unit.either}")
+    if unit.zero:
+        raise ValueError(
+            f"{spelling} counts from {unit.zero:.6g} {si}, the column from 0 {si} or from a temperature of its own"
+        )
     if not unit.per_turn:
         return unit.factor
     if per_turn is None:

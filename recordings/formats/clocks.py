@@ -1,14 +1,23 @@
 """The clock of each signal of a file that does not state it: the vector beside it, or above it, that is named as times are."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from recordings.signals import Signal
-from recordings.units import DATE_NAMES, TIME_NAMES, known, unit_of_clock, without_suffix
+from recordings.units import (
+    DATE_NAMES,
+    TIME_NAMES,
+    Unit,
+    known,
+    suffix_of,
+    unit_of_clock,
+    unit_of_suffix,
+    without_suffix,
+)
 
 
 def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
@@ -17,7 +26,13 @@ def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
     Times are what is named so; where nothing is, dates and times of day; else what rises in a stated unit of time; else what is named as
     dates are, which a spreadsheet writes as numbers.
     """
-    named = [name for name, signal in signals.items() if signal.values.ndim == 1 and is_time_name(name)]
+    named = _without_temperatures(
+        [
+            name
+            for name, signal in signals.items()
+            if signal.values.ndim == 1 and is_time_name(name) and not _of_another_quantity(known(signal.unit))
+        ]
+    )
     dated = [name for name, signal in signals.items() if signal.instants]
     rising = [name for name, signal in signals.items() if _rises_in_time(signal)]
     clocks = named or dated or rising or [name for name in signals if name.lower() in DATE_NAMES]
@@ -80,12 +95,27 @@ def _rises_in_time(signal: Signal) -> bool:
 
 def is_time_name(name: str) -> bool:
     """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `TimeMs`, `t_s`, `millis`."""
-    last = re.split(r"[./:]", name)[-1].strip("_")
+    last = _last(name).strip("_")
     if unit_of_clock(last.lower()):
         return True
-    if last.endswith(("]", ")")):  # one of many
+    suffix = suffix_of(last)
+    if last.endswith(("]", ")")) or (suffix and _of_another_quantity(unit_of_suffix(suffix))):  # one of many; T_K
         return False
     return not TIME_NAMES.isdisjoint((last.lower(), without_suffix(last.lower()), without_suffix(last).lower()))
+
+
+def _without_temperatures(named: Sequence[str]) -> list[str]:
+    """The names of times without T where another stands beside it: then it is a temperature or a torque."""
+    return [name for name in named if _last(name) != "T" or sum(_around(one) == _around(name) for one in named) == 1]
+
+
+def _last(name: str) -> str:
+    return re.split(r"[./:]", name)[-1]
+
+
+def _of_another_quantity(unit: Unit | None) -> bool:
+    """Whether a unit is one of something else than time, of which counts may be."""
+    return unit is not None and unit.si not in ("s", "1") and not unit.per_turn
 
 
 def _clock_of(name: str, signal: Signal, signals: Mapping[str, Signal], clocks: list[str]) -> str | None:

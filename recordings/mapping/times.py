@@ -13,7 +13,7 @@ from recordings.mapping.source import Source
 from recordings.mapping.values import evaluated, factor_of, parsed, picked, single, unit_for
 from recordings.mapping.wraps import clock_past_its_end
 from recordings.signals import Signal, listed
-from recordings.units import factor_to, known, suffix_of
+from recordings.units import factor_to, known, suffix_of, unit_of_suffix
 from records.errors import BadInput
 
 Array = NDArray[np.float64]
@@ -111,6 +111,7 @@ def _no_times(of: Source, name: str, length: int) -> BadInput:
 
 def _may_be_times(name: str, signal: Signal, length: int) -> bool:
     """Whether a signal only increases and bears no unit of anything else."""
-    unit = known(signal.unit or suffix_of(name))
+    suffix = suffix_of(name)
+    unit = known(signal.unit) if signal.unit or not suffix else unit_of_suffix(suffix)
     increases = signal.values.shape == (length,) and bool(np.all(np.diff(signal.values) > 0.0))
     return increases and (unit is None or unit.si == "s")

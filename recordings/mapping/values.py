@@ -12,11 +12,13 @@ from recordings.mapping.expression import parse
 from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
 from recordings.signals import Signal, listed
-from recordings.units import factor_to, suffix_of, unit_of_clock, unit_of_suffix
+from recordings.units import factor_to, suffix_of, unit_of_clock, unit_of_suffix, with_own_zero
 from records.errors import BadInput
 from records.text.units import unit_of
 
 Array = NDArray[np.float64]
+
+ROOM_K = 293.15  # the example of what a temperature may be counted from
 
 
 class Looked:
@@ -90,11 +92,21 @@ def factor_of(name: str, text: str, quantity: Quantity, of: Source) -> tuple[flo
     except ValueError as error:
         if "--per-turn" not in str(error) and _says_factor_one(parsed(name, text, of)):
             return 1.0, f", as typed, in spite of its {quantity.unit}"
-        remedy = f"give the factor to {si}: --column {shlex.quote(f'{name}={text}*FACTOR')}"
+        remedy = _factor_or_zero(name, text, si, quantity.unit)
         if "--per-turn" in str(error):
             remedy = "give them with --per-turn N, all edges counted"
         raise BadInput(f"unit of {text!r}", of.where, f"{quantity.unit!r}: {error}", si, remedy) from error
     return factor, f", {quantity.unit} times {factor:.9g}" if factor != 1.0 else f", in {quantity.unit}"
+
+
+def _factor_or_zero(name: str, text: str, si: str, spelling: str) -> str:
+    """What to type for a unit without a factor to the column's; of a temperature's both readings."""
+    unit = with_own_zero(spelling)
+    if unit is None or unit.si != si:
+        return f"give the factor to {si}: --column {shlex.quote(f'{name}={text}*FACTOR')}"
+    zero, room = unit.zero / unit.factor, round((ROOM_K - unit.zero) / unit.factor)
+    absolute, above = (shlex.quote(f"{name}=({text}{offset:+.6g})*{unit.factor:.10g}") for offset in (zero, -room))
+    return f"type --column {absolute}, or of {si} above a room of {room} {spelling} --column {above}"
 
 
 def _says_factor_one(node: Node) -> bool:

@@ -27,26 +27,9 @@ _SYMBOLS: Mapping[str, Dimension] = {
     "1": (0, 0, 0, 0, 0),
     "-": (0, 0, 0, 0, 0),
 }
-_SUFFIXES = (
-    "rad_s2",
-    "rad_s",
-    "m_s2",
-    "m_s",
-    "m3_s",
-    "kg_s",
-    "rad",
-    "Nm",
-    "m3",
-    "kg",
-    "Pa",
-    "m",
-    "V",
-    "A",
-    "N",
-    "K",
-    "W",
-    "s",
-)  # a longer one before its own ending
+# A longer one before its own ending: K_s is a rate of K, no time.
+_PLAIN = ("rad", "Nm", "m3", "kg", "Pa", "m", "V", "A", "N", "K", "W")
+_SUFFIXES = (*(f"{unit}{over}" for over in ("_s2", "_s", "") for unit in _PLAIN), "s")
 _FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+(?:\.5)?))?$")
 
 

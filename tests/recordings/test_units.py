@@ -58,6 +58,16 @@ def test_no_spelling_and_no_suffix_means_two_units() -> None:
         ("s", "milisegundos", 1e-3),
         ("s", "mikrosekunder", 1e-6),
         ("V", "voltios", 1.0),
+        ("K", "kelvin", 1.0),
+        ("K/s", "K/s", 1.0),
+        ("K/s", "degC/s", 1.0),
+        ("K/s", "°C/min", 1 / 60),
+        ("K/s", "degF/min", 5 / 9 / 60),
+        ("K/s", "K s^-1", 1.0),
+        ("K/s", "mK/s", 1e-3),
+        ("V/s", "mV/ms", 1.0),
+        ("A/s", "mA/s", 1e-3),
+        ("W", "kW", 1e3),
     ],
 )
 def test_known_units_convert(si: str, unit: str, factor: float) -> None:
@@ -75,6 +85,11 @@ def test_known_units_convert(si: str, unit: str, factor: float) -> None:
         ("rad", "grad", "400 to a turn"),  # of German, and of surveyors
         ("rad/s", "grad/s", "400 to a turn"),
         ("rad/s", "1/s", "turns a second"),
+        ("K", "degC", "counts from 273.15 K"),
+        ("K", "°F", "counts from 255.372 K"),
+        ("K", "K/s", "K/s to K"),
+        ("K/s", "degC", "degC to K/s"),
+        ("s", "K/s", "K/s to s"),
     ],
 )
 def test_another_quantity_an_unknown_unit_and_counts_of_no_turn_are_refused(si: str, unit: str, told: str) -> None:
@@ -108,6 +123,11 @@ def test_another_quantity_an_unknown_unit_and_counts_of_no_turn_are_refused(si: 
         ("a_mrad_s2", "mrad_s2"),
         ("u_M", ""),
         ("psi_second", ""),
+        ("T_K", "K"),
+        ("rise_K_s", "K_s"),
+        ("rise_degC_s", "degC_s"),
+        ("rise_degF_per_min", "degF_per_min"),
+        ("slew_mV_s", "mV_s"),
     ],
 )
 def test_a_unit_is_read_off_the_end_of_a_name(name: str, suffix: str) -> None:
