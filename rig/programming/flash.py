@@ -21,6 +21,10 @@ _MOST_LINES = 3
 _ERASE_REFUSED = re.compile(r"NACK.*0x44.*Failed to erase memory", re.DOTALL)
 _READ_REFUSED = re.compile(r"NACK.*Failed to read memory", re.DOTALL)
 _PROTECTED = re.compile(r"protect|locked|RDP", re.IGNORECASE)
+_OTHER_WAY = {
+    "stm32flash": "through an ST-LINK, without --port, for which openocd is needed",
+    "openocd": "through the boot loader, with --port PORT, for which stm32flash is needed",
+}
 _FLASH_AGAIN = "the chip may hold a part of the image: leave the motors without supply and flash again"
 
 
@@ -155,7 +159,7 @@ def _run(command: Sequence[str]) -> subprocess.CompletedProcess[str]:
             where="flash",
             got=f"no {tool} on this computer",
             expected=f"{tool} in the search path",
-            remedy=f"install it (Debian: apt install {tool}), or use the other way to flash",
+            remedy=f"install it (Debian, Ubuntu: sudo apt install {tool}), or flash {_OTHER_WAY[tool]}",
         )
     return subprocess.run(list(command), capture_output=True, text=True, errors="replace", check=False)
 

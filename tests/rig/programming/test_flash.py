@@ -80,9 +80,9 @@ def test_the_boot_loader_writes_verifies_and_starts_at_the_start_of_flash(port, 
 
 def test_a_missing_tool_is_named_with_its_remedy(monkeypatch, tmp_path, image):
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(BadInput, match=r"no openocd on this computer.*apt install openocd"):
+    with pytest.raises(BadInput, match=r"no openocd on this computer.*apt install openocd.*with --port PORT"):
         flash_through_st_link(Path("firmware.elf"))
-    with pytest.raises(BadInput, match=r"no stm32flash on this computer.*apt install stm32flash"):
+    with pytest.raises(BadInput, match=r"no stm32flash on this computer.*apt install stm32flash.*without --port"):
         flash_through_boot_loader(image, "/dev/ttyUSB0")
 
 
