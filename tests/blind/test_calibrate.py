@@ -205,7 +205,9 @@ def test_the_verb_writes_the_same_file_every_time_in_the_form_that_the_diagnosis
     assert (content["families"]["b"]["seeds"], content["families"]["b"]["cases"]) == ([4, 5], 16)
     assert content["families"]["b"]["answers"] == 12
     assert main([*words, str(tmp_path / "one.json"), *told[0], *told[1], "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["families"]["b"]["seeds"] == [4]
+    said = json.loads(capsys.readouterr().out)
+    assert said["families"]["b"]["seeds"] == [4]
+    assert said == json.loads((tmp_path / "one.json").read_text())  # as docs/json.md says
 
 
 def test_one_family_or_one_without_candidates_is_refused_and_nothing_is_written(

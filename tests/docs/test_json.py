@@ -7,9 +7,12 @@ import pytest
 
 from tests.docs.json_page import PAGE, ROWS, is_as_documented, keys
 from tests.docs.results import result
+from tests.twinlaw.verbs.crews import works_here
 from twinlaw.cli.completion import command_tree
 from twinlaw.command import build_parser, main
 from twinlaw.verbs import VERBS
+from twinlaw.verbs import blind as blind_verb
+from twinlaw.workflows.diagnose.each import Answered
 
 # What longer commands have printed is kept, without what changes from run to run.
 KEPT = {
@@ -54,6 +57,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("simulate", ["--table", "FOLDER/controller.json"]),
         ("trace", ["elevation_q_1_V_rad[2]", "--table", "FOLDER/controller.json"]),
         ("import", ["FOLDER/simulation.csv"]),
+        ("export", ["FOLDER/simulation.csv"]),
         ("new-plant", ["my_arm"]),
         ("doctor", []),
     ],
@@ -61,12 +65,29 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_verb_prints_the_keys_of_its_row(
     verb: str, words: list[str], folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = {"trace": [], "doctor": [], "import": ["--out", str(tmp_path / "log.csv")]}.get(
-        verb, ["--out", str(tmp_path)]
-    )
+    files = {"import": "log.csv", "export": "log.mf4"}
+    out = [] if verb in ("trace", "doctor") else ["--out", str(tmp_path / files.get(verb, ""))]
     capsys.readouterr()
     assert main([verb, *(word.replace("FOLDER", str(folder)) for word in words), *out, "--json"]) == 0
     assert is_as_documented(verb, json.loads(capsys.readouterr().out))
+
+
+def test_the_verbs_of_sealed_cases_print_the_keys_of_their_rows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # Truth: one case is made and answered by the quickest baseline; a diagnosis takes minutes, so here it is there already.
+    works_here(monkeypatch)
+    kept = Answered("case-0001", None, None, kept=True)
+    monkeypatch.setattr(blind_verb, "answers", lambda *_: iter([kept]))
+    cases, answers = str(tmp_path / "cases"), str(tmp_path / "answers")
+    for verb, words in {
+        "blind make": ["--seed", "5", "--cases", "1", "--kinds", "nominal", "--out", cases],
+        "blind baseline": ["residual-size", cases, answers],
+        "blind diagnose": [cases, answers],
+    }.items():
+        capsys.readouterr()
+        assert main([*verb.split(), *words, "--json"]) == 0
+        assert is_as_documented(verb, json.loads(capsys.readouterr().out))
 
 
 def test_bad_input_is_the_object_that_the_page_says(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

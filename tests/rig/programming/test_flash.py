@@ -1,5 +1,6 @@
 """Commands that program a board; what is said when they cannot; stm32flash itself against an emulated boot loader."""
 
+import json
 import os
 import shutil
 import signal
@@ -24,8 +25,11 @@ from rig.programming.flash import (
     openocd_command,
 )
 from rig.programming.image import build_firmware
+from tests.docs.json_page import is_as_documented
 from tests.law_tables import ce150_table
 from twinlaw.command import main
+from twinlaw.verbs import flash as verb
+from twinlaw.workflows.chain.boards import board_url
 
 FLASH = STM32G071.flash
 needs_stm32flash = pytest.mark.skipif(
@@ -211,6 +215,22 @@ def test_the_verb_tries_all_of_it_on_an_emulated_chip(built, capsys):
     folder, arithmetic = built
     assert main(["flash", "--port", "emulated", "--out", str(folder)]) == 0
     assert f"table {ce150_table().digest[:16]}, {arithmetic}" in capsys.readouterr().out
+
+
+def test_a_program_is_told_what_was_written_and_what_an_emulated_chip_says_it_is(
+    built, fake_tool, monkeypatch, capsys
+) -> None:
+    folder, arithmetic = built
+    fake_tool("openocd", "exit 0")
+    monkeypatch.setattr(
+        verb, "flash_emulated", lambda _: asked_identity(board_url("emulated", folder / "firmware.elf"))
+    )
+    for port in ([], ["--port", "emulated"]):
+        assert main(["flash", *port, "--out", str(folder), "--json"]) == 0
+        said = json.loads(capsys.readouterr().out)
+        assert is_as_documented("flash", said)
+        assert said["written"]
+    assert (said["table_digest"], said["arithmetic"]) == (ce150_table().digest, arithmetic)
 
 
 def test_an_image_of_the_other_arithmetic_is_refused_before_anything_is_written(

@@ -22,6 +22,7 @@ from rig.emulator.ports.pty_port import PtyBoard
 from rig.link.client import BoardClient
 from sim.columns import log_columns
 from sim.plants import MODELS
+from tests.docs.json_page import is_as_documented
 from tests.soak import sampled
 from tests.twinlaw.watching.conftest import PATIENT_S, PLANT, Open, Watch
 from twinlaw.command import main
@@ -396,15 +397,15 @@ def test_a_signal_at_the_end_of_a_wait_ends_it(carried: Path) -> None:
 
 
 @contextmanager
-def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], Page]]:
-    """`twinlaw watch` as a process of its own, with a page."""
+def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], Page, Any]]:
+    """`twinlaw watch` as a process of its own, with a page and what it printed first."""
     command = [sys.executable, "-m", "twinlaw.command", "watch", "--json", *words]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
-        url = json.loads(process.stdout.readline())["url"]
-        address, token = url.removeprefix("http://127.0.0.1:").split("/#")
-        yield process, Page(int(address), token)
+        first = json.loads(process.stdout.readline())
+        address, token = first["url"].removeprefix("http://127.0.0.1:").split("/#")
+        yield process, Page(int(address), token), first
     finally:
         process.kill()
         process.wait()
@@ -421,7 +422,7 @@ def test_ctrl_c_disarms_and_a_host_that_dies_leaves_the_board_to_make_itself_saf
     # The board runs in this process, behind a terminal device: the host that dies knows it as a serial port like any other.
     words = ["--table", str(carried / "controller.json"), "--record", str(tmp_path / "flown.csv")]
     with PtyBoard(carried / "firmware.elf") as board:
-        with started("--port", board.path, *words) as (process, page):
+        with started("--port", board.path, *words) as (process, page, first):
             assert page.wish(do="arm")[0] == 200
             page.next("rows", lambda content: content["u"][0][-1] > 0.0)
             process.send_signal(way)
@@ -437,6 +438,7 @@ def test_ctrl_c_disarms_and_a_host_that_dies_leaves_the_board_to_make_itself_saf
         log = load_log(tmp_path / "flown.csv", log_columns(MODELS["ce150"]()))
         assert len(log.t_s) > 1
         assert json.loads(last_words) == {"recorded": str(tmp_path / "flown.csv"), "rows": len(log.t_s)}
+        assert is_as_documented("watch", {**first, **json.loads(last_words)})
         assert log.table_digest == json.loads((carried / "controller.json").read_text())["digest"]
     else:
         assert not os.listdir(tmp_path)
