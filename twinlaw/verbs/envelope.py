@@ -4,7 +4,9 @@ Without FLIGHTS the tests are flown on a simulated helicopter: 22 conditions to 
 between them that are only predicted. FLIGHTS is a folder of sidecars NAME.toml with their NAME.csv, as --keep-flights writes them. Writes
 DIR/envelope.json, after each condition, and DIR/report.html; models are judged by the FAA's margins and the three-second rule. Conditions
 are shared out among processes; DIR/jobs keeps what is done until all is, so that the same command goes on where it was interrupted.
-Initial states are tuned automatically; --starts takes others, typed in by flight, to lay beside them.
+Initial states are tuned automatically; --starts takes others, typed in by flight, to lay beside them. It takes no --plant: it estimates A
+and B of a rigid body in flight, whose eight states are all measured, and the FAA states its margins for helicopters alone. Equations of a
+plant file hold at every operating point: `identify` takes logs from all of them, and `design` linearises at each.
 """
 
 import argparse

@@ -54,6 +54,14 @@ def folder(flown: list[Flight], tmp_path_factory) -> Path:
     return found
 
 
+def test_its_help_says_why_it_takes_no_plant_file_and_what_does(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["envelope", "--help"])
+    told = " ".join(capsys.readouterr().out.split())
+    assert "takes no --plant" in told
+    assert "`identify` takes logs from all of them" in told
+
+
 def test_a_flight_reads_back_as_it_was_written(flown: list[Flight], folder: Path) -> None:
     flights = load_flights(folder)
     assert len(flights) == 2 * 4 + 2 + 4
