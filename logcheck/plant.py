@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from logcheck import thresholds
+from logcheck.derived_units import rate_unit, reference_unit, rotor_unit
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
 from logcheck.grid import are_whole, grid_findings, is_on, some
 from logcheck.motion import exchange_findings, motion_findings
+from logcheck.scale import misfit
 from logcheck.standing import locked_findings, off_findings
-from logcheck.units.derived import rate_unit, reference_unit, rotor_unit
-from logcheck.units.scale import fits_better
 from records.errors import BadInput
 from records.log import RunLog
 from records.logs.clock import finer_unit
@@ -82,36 +82,59 @@ def _time_unit(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
 def _angle_unit(log: RunLog, name: str, column: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
     """Degrees or counts where radians should be, where the numbers are an angle of the plant in that unit; else no angle at all.
 
-    Steps of a sensor in degrees may be those of a coarser one in radians: within the stops the plant's own motion tells them apart.
+    Steps of a sensor in degrees may be those of a coarser one in radians, and whole degrees counts: the plant's own motion tells.
     """
-    values, step = some(log.column(column)), facts.steps.get(column, 0.0)
+    values = some(log.column(column))
     if not column.endswith("_rad") or values.size < 2 or values.min() == values.max():
         return
     widest, greatest = _widest(column, facts), _greatest(values)
-    on_grid = step > 0.0 and is_on(values, step)
-    in_steps = step > 0.0 and is_on(values, step * DEGREE)
-    whole = are_whole(values)
     is_beyond = np.isfinite(widest) and greatest > max(
         thresholds.FAR_BEYOND * widest, widest + 3.0 * thresholds.BEYOND_STOP_rad
     )
-    in_degrees = thresholds.LEAST_OF_STOP * widest < greatest / DEGREE <= widest + thresholds.BEYOND_STOP_rad
-    unit = None
-    if (
-        step > 0.0
-        and whole
-        and not on_grid
-        and 3.0 < greatest <= (min(widest, thresholds.MOST_rad) + thresholds.BEYOND_STOP_rad) / step
-    ):
-        unit = "encoder counts"
-    elif not on_grid and (
-        (is_beyond and in_degrees) or (in_steps and (is_beyond or fits_better(log, bound, column, DEGREE)))
-    ):
-        unit = "degrees"
+    unit = _unit_by_motion(log, column, bound, facts, is_beyond)
     if unit is not None:
         sentence = f"{column} is in {unit}: up to {greatest:.4g}"
         yield _slip(log, name, column, sentence, "radians", "convert the column to radians")
     elif is_beyond:
         yield _no_angle(log, name, column, facts)
+
+
+def _unit_by_motion(log: RunLog, column: str, bound: BoundPlant, facts: PlantFacts, is_beyond: bool) -> str | None:
+    """The unit of an angle's numbers, None for radians and for none that is known; `is_beyond` of its stops as radians.
+
+    Readings on the sensor's grid are radians, unless they are as round as degrees are. Counts are whole, and degrees of the size of the
+    axis' way, or on the sensor's grid in degrees, or such as the plant clearly moves by.
+    """
+    values, step = some(log.column(column)), facts.steps.get(column, 0.0)
+    if step > 0.0 and is_on(values, step) and not are_whole(values / thresholds.ROUND_deg):
+        return None
+    possible = _possible_units(values, step, _widest(column, facts))
+
+    def of(scale: float) -> float:
+        return misfit(log, bound, column, scale) if column in facts.positions else np.inf
+
+    if not possible:
+        return None
+    in_radians, found = of(1.0), {unit: of(scale) for unit, scale in possible.items()}
+    unit = min(found, key=lambda each: found[each])
+    if unit == "encoder counts":
+        return unit if is_beyond or found[unit] <= in_radians else None
+    way = _greatest(values) / DEGREE
+    by_size = is_beyond and way > thresholds.LEAST_OF_STOP * _widest(column, facts)
+    in_steps = step > 0.0 and is_on(values, step * DEGREE)
+    by_steps = in_steps and (is_beyond or found[unit] < in_radians)
+    return unit if by_size or by_steps or found[unit] * thresholds.MOTION_TELLS < in_radians else None
+
+
+def _possible_units(values: Array, step: float, widest: float) -> dict[str, float]:
+    """Units other than radians in which the numbers stay within the stops, with what of each is one radian."""
+    greatest, found = _greatest(values), dict[str, float]()
+    most = min(widest, thresholds.MOST_rad) + thresholds.BEYOND_STOP_rad
+    if step > 0.0 and are_whole(values) and 3.0 < greatest <= most / step:
+        found["encoder counts"] = 1.0 / step
+    if greatest / DEGREE <= widest + thresholds.BEYOND_STOP_rad:
+        found["degrees"] = DEGREE
+    return found
 
 
 def _no_angle(log: RunLog, name: str, column: str, facts: PlantFacts) -> Found:

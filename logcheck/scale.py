@@ -18,19 +18,14 @@ SETTLE_S = 2.0  # with the first inputs before a log: rotors turn as these make 
 WINDOWS = 200  # spread over a log: time
 
 
-def fits_better(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> bool:
-    """Whether an output that is an axis' position, divided so, is nearer to what the model does with the logged inputs than as it stands.
+def misfit(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> float:
+    """How far an output that is an axis' position, divided so, is from what the model does with the logged inputs; 1 for no better than a
+    straight line, infinite where no window can be simulated.
 
     A window's error is the model's position AHEAD_S later less the one that was read, both against going on straight on:
-    R = sum (y - y_model)^2 / sum (y - y_straight)^2. In the right unit R is below that in the wrong one: numbers too large by 57 bend 57
-    times as far as the model does, R near 1; numbers too small bend a 57th of it, R far above. False where no window can be simulated.
+    R = sum (y - y_model)^2 / sum (y - y_straight)^2. In the right unit R is below that in a wrong one: numbers too large by 57 bend 57
+    times as far as the model does, R near 1; numbers too small bend a 57th of it, R far above.
     """
-    as_it_stands, divided = (_misfit(log, bound, column, scale) for scale in (1.0, divided_by))
-    return divided < as_it_stands
-
-
-def _misfit(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> float:
-    """R of an output divided by a factor; infinite where nothing can be simulated."""
     rows = max(2, round(AHEAD_S / log.sample_period_s))
     half = rows // 2
     y = log.column(column) / divided_by

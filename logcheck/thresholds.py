@@ -131,6 +131,12 @@ BEYOND_STOP_rad = Limit(0.1, "rad", "offsets and scales of a sensor may carry an
 UNIT_QUANTILE = Limit(0.95, "quantile", "rows that speak for the unit")
 FAR_BEYOND = Limit(1.5, "times the stop", "an angle this far beyond a stop is in another unit")
 LEAST_OF_STOP = Limit(0.2, "share of the stop", "that an angle in degrees reaches where only its size speaks")
+ROUND_deg = Limit(
+    0.01, "deg", "on whole ones of which readings may be degrees though they lie on the sensor's grid in radians"
+)
+MOTION_TELLS = Limit(
+    2.0, "ratio of misfits", "the unit in which the plant moves so fits so much better; 3.7 and more where it was tried"
+)
 MOST_rad = Limit(1000.0, "rad", "an axis without stops is counted to")
 FULL_percent = Limit(100.5, "percent", "a duty in percent reaches no more")
 MACHINE_CLOSE = Limit(1.6, "factor", "a rig may need this much more or less than its plant file says")

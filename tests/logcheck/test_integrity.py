@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from logcheck.integrity import Integrity, demand, examine
-from logcheck.units.scale import fits_better
+from logcheck.scale import misfit
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
+from sim.bind import bind
 from sim.columns import log_columns
 from sim.equilibrium import equilibrium
 from sim.simulate import simulate
@@ -142,12 +143,40 @@ def test_degrees_within_the_stops_are_told_from_coarse_radians_by_how_the_plant_
     degrees = _read_in(small, column, TURN_STEP_RAD, 180.0 / np.pi)
     coarse_rad = TURN_STEP_RAD * 180.0 / np.pi
     assert 3.0 * coarse_rad < np.ptp(degrees.column(column)) < 2.5
-    assert fits_better(degrees, plant(), column, 180.0 / np.pi)
+    assert misfit(degrees, plant(), column, 180.0 / np.pi) < misfit(degrees, plant(), column, 1.0)
     assert [(found.kind, found.column) for found in _examined(degrees).refusals] == [("unit_slip", column)]
     for whole in (1.0, 2.0, 4.0):
         coarse = _read_in(replace(large, extra={}), column, whole * coarse_rad, 1.0)
-        assert not fits_better(coarse, plant(), column, 180.0 / np.pi)
+        assert misfit(coarse, plant(), column, 180.0 / np.pi) > misfit(coarse, plant(), column, 1.0)
         assert not _examined(coarse).refusals
+
+
+@pytest.mark.parametrize(
+    ("column", "step_deg"),
+    [(column, step_deg) for column in ("psi_rad", "phi_rad") for step_deg in (0.01, 0.25, 1.0, 5.0, 15.0)],
+)
+def test_degrees_of_any_steps_are_told_and_whole_ones_are_no_counts(column: str, step_deg: float) -> None:
+    """Truth: angles up to 25 and 56 degrees, read in steps of up to 15 degrees."""
+    coarse = _read_in(replace(clean(), extra={}), column, np.radians(step_deg), 180.0 / np.pi)
+    (found,) = _examined(coarse).refusals
+    assert found.kind == "unit_slip"
+    assert f"{column} is in degrees" in found.sentence
+
+
+@pytest.mark.parametrize("step_deg", [0.1, 0.25, 0.5])
+def test_coarse_degrees_within_the_stops_are_told_by_the_motion_alone(step_deg: float) -> None:
+    """Truth: 2 degrees at most, which would be an angle in radians too, on neither grid of the sensor."""
+    coarse = _read_in(_around_rest(), "phi_rad", np.radians(step_deg), 180.0 / np.pi)
+    assert [(found.kind, found.column) for found in _examined(coarse).refusals] == [("unit_slip", "phi_rad")]
+
+
+def test_steps_of_degrees_that_lie_on_the_sensor_s_grid_too_are_degrees() -> None:
+    """Truth: steps of 15 degrees, each 10 000 of a sensor's of 1.5 mrad."""
+    sensors = dict.fromkeys(plant().plant.sensors, 1.5e-3)
+    rig = bind(replace(plant().plant, sensors=sensors))
+    coarse = _read_in(replace(clean(), extra={}), "phi_rad", np.radians(15.0), 180.0 / np.pi)
+    (found,) = examine((coarse,), rig).refusals
+    assert "phi_rad is in degrees" in found.sentence
 
 
 @pytest.mark.parametrize("step_rad", [0.05, 0.1, 0.2, 0.25, 0.5])
