@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from logcheck.integrity import Integrity, demand, examine
-from logcheck.scale import misfit
+from logcheck.units.scale import misfit
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
 from sim.bind import bind

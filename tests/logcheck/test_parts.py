@@ -7,16 +7,17 @@ import pytest
 
 from logcheck.between import duplicate_findings, plant_pair_findings, shared_rows
 from logcheck.dead import amount, dead_findings, read_again
-from logcheck.derived_units import rate_unit, reference_unit
+from logcheck.facts import plant_facts
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Found, in_words
 from logcheck.grid import grid_step, printed_digits
 from logcheck.held import held_findings
 from logcheck.inputs import input_findings
 from logcheck.motion import motion_findings
-from logcheck.plant import plant_facts, plant_findings
+from logcheck.plant import plant_findings
 from logcheck.seams import seam_findings
 from logcheck.stamps import timing, timing_findings
 from logcheck.standing import locked_findings
+from logcheck.units.derived import rate_unit, reference_unit
 from logcheck.values import excitations, saturations, value_findings
 from records.log import RunLog
 from sim.columns import log_columns

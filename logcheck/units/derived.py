@@ -7,7 +7,8 @@ import numpy as np
 import sympy
 
 from logcheck import thresholds
-from logcheck.finding import REFUSE, Array, Finding, Found
+from logcheck.finding import Array, Found
+from logcheck.units.slip import slip
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.columns import reference_name
@@ -15,6 +16,7 @@ from sim.model import Model
 
 SLOPES = {np.degrees(1.0): "degrees", 30.0 / np.pi: "rpm", 0.5 / np.pi: "turns"}  # number written for 1 rad or 1 rad/s
 SMOOTHING_S = 0.1
+EXPECTED = "radians and seconds"
 
 
 def reference_unit(log: RunLog, name: str, column: str) -> Iterator[Found]:
@@ -24,7 +26,8 @@ def reference_unit(log: RunLog, name: str, column: str) -> Iterator[Found]:
         return
     unit = _unit_of(log.column(column), log.extra[other], thresholds.FOLLOWS_CORRELATION, thresholds.FOLLOWS_FACTOR)
     if unit == "degrees":
-        yield _slip(log, name, other, f"{other} is in {unit}, by {column} which follows it")
+        sentence = f"{other} is in {unit}, by {column} which follows it"
+        yield slip(log, name, other, sentence, EXPECTED, f"convert {other}")
 
 
 def rate_unit(log: RunLog, name: str, model: Model) -> Iterator[Found]:
@@ -35,7 +38,8 @@ def rate_unit(log: RunLog, name: str, model: Model) -> Iterator[Found]:
             angle, rate = _differentiated(log, position, velocity)
             unit = _unit_of(angle, rate)
             if unit is not None:
-                yield _slip(log, name, velocity, f"{velocity} is in {unit} a second or minute, by {position}")
+                sentence = f"{velocity} is in {unit} a second or minute, by {position}"
+                yield slip(log, name, velocity, sentence, EXPECTED, f"convert {velocity}")
 
 
 def rotor_unit(log: RunLog, name: str, bound: BoundPlant, limits: Mapping[str, tuple[float, float]]) -> Iterator[Found]:
@@ -56,7 +60,8 @@ def rotor_unit(log: RunLog, name: str, bound: BoundPlant, limits: Mapping[str, t
         errors = {scale: _balance(log, speed / scale, rate(speed / scale, u, *bound.p)) for scale in (1.0, *SLOPES)}
         best = min(errors, key=lambda scale: errors[scale])
         if best != 1.0 and errors[best] * thresholds.CLEARLY_BETTER < errors[1.0]:
-            yield _slip(log, name, column, f"{column} is in {SLOPES[best]} a second or minute, by its own equation")
+            sentence = f"{column} is in {SLOPES[best]} a second or minute, by its own equation"
+            yield slip(log, name, column, sentence, EXPECTED, f"convert {column}")
 
 
 @cache
@@ -101,9 +106,3 @@ def _unit_of(
         return None
     slope = float(other.std() / one.std())
     return next((unit for value, unit in SLOPES.items() if value / close < slope < value * close), None)
-
-
-def _slip(log: RunLog, name: str, column: str, sentence: str) -> Found:
-    span = (float(log.t_s[0]), float(log.t_s[-1]))
-    expected, remedy = "radians and seconds", f"convert {column}"
-    return Found(Finding("unit_slip", name, column, *span, sentence, REFUSE, 0, expected, remedy))
