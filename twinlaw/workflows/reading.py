@@ -21,12 +21,11 @@ def load_known_log(path: Path, bound: BoundPlant | None = None) -> RunLog:
     if bound is not None and plant == bound.nominal.name:
         return load_log(path, log_columns(bound.nominal))
     if plant not in MODELS:
-        where = f"{path.with_suffix('.toml')}: plant"
-        raise BadInput(
-            "plant",
-            where,
-            repr(plant),
+        known, remedy = (
             f"one of {', '.join(MODELS)}",
             "name a known plant, or give the plant file of your own with --plant",
         )
+        if bound is not None:
+            known, remedy = f"{bound.nominal.name!r}, or {known}", "give the log and the plant of one rig"
+        raise BadInput("plant", str(path.with_suffix(".toml")), repr(plant), known, remedy)
     return load_log(path, log_columns(MODELS[plant]()))
