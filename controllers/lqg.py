@@ -29,7 +29,7 @@ from controllers.equations.designing import Points, axis_table, largest_output, 
 from controllers.equations.equation_controller import EquationController
 from controllers.equations.frame import AxisNumbers, Decisions
 from controllers.equations.judging import demand_held_at_rest, demand_margins
-from controllers.lqg_gains import Gains, Speeds, gains_at, wished_speeds
+from controllers.lqg_gains import Gains, Share, Speeds, gains_at, wished_speeds
 from controllers.lqg_loop import controller_at, open_loop
 from controllers.pid_tuning import SENSITIVITIES
 from design.loop import plant_polynomials
@@ -48,6 +48,9 @@ KINDS = ("a", "b", "k", "l", "g", "inverse_g")
 # Shares of the wished speed, tried in turn until every loop, the others closed, is robust: |1/(1 + L)| within what a PID gets at most.
 # quanser_aero, whose inputs push both axes alike, needs a quarter; a zero to the right, as a drum's level has, a half.
 SLOWER = tuple(float(2.0 ** (-step / 4.0)) for step in range(13))
+# Then powers of the loops' wished speeds about their mean, tried in turn: where one loop's closing turns the sign of what another's input
+# does, as on ce150_velagic, no common speed holds both; the loop that is wished faster must be so by far.
+APART = tuple(1.0 + 0.25 * step for step in range(1, 13))
 SENSITIVITY = SENSITIVITIES[-1]
 
 
@@ -136,26 +139,38 @@ class Lqg:
 def design(points: Points) -> LawTable[LqgGains]:
     """All loops at each operating point, fitted over the schedule, at the first speed of SLOWER at which they are robust together.
 
-    Raises BadInput naming what they do not hold at the last one.
+    Where none is common to them, then at the first power of APART. Raises BadInput naming what they do not hold at the last common one.
     """
     for loop in points.settings.loops:
         demand_held_at_rest(points, loop.axis)
-    for share in SLOWER:
-        speeds = {loop.axis: wished_speeds(points.settings.axis(loop.axis), share) for loop in points.settings.loops}
+    common = [dict.fromkeys((loop.axis for loop in points.settings.loops), Share(share, 1.0)) for share in SLOWER]
+    apart = [shares for shares in (_apart(points, power) for power in APART) if len(set(shares.values())) > 1]
+    told: BadInput | None = None
+    for shares in (*common, *apart):
+        speeds = {axis: wished_speeds(points.settings.axis(axis), share) for axis, share in shares.items()}
         gains = _all_gains(points, speeds)
-        try:
-            _judge(points, gains)
-        except BadInput:
-            if share == SLOWER[-1]:
-                raise
-            continue
-        axes = {
-            axis: axis_table(points, axis, own, _filter_s(points, axis, speeds[axis])) for axis, own in gains.items()
-        }
-        return law_table(
-            "lqg", points, axes, {axis: _origin(points, axis, entry, share) for axis, entry in speeds.items()}
-        )
-    raise AssertionError
+        refused = _refusal(points, gains)
+        if refused is None:
+            return _table(points, gains, speeds, shares)
+        told = refused if shares is common[-1] else told
+    assert told is not None
+    raise told
+
+
+def _table(
+    points: Points, gains: Mapping[str, LqgGains], speeds: Mapping[str, Speeds], shares: Mapping[str, Share]
+) -> LawTable[LqgGains]:
+    axes = {axis: axis_table(points, axis, own, _filter_s(points, axis, speeds[axis])) for axis, own in gains.items()}
+    origin = {axis: _origin(points, axis, entry, shares[axis].regulator) for axis, entry in speeds.items()}
+    return law_table("lqg", points, axes, origin)
+
+
+def _apart(points: Points, power: float) -> dict[str, Share]:
+    """Each loop's share of its wished speeds where all lie at this power of what they were about their geometric mean."""
+    axes = [loop.axis for loop in points.settings.loops]
+    wished = np.array([wished_speeds(points.settings.axis(axis), Share(1.0, 1.0)).regulator_rad_s for axis in axes])
+    shares = ((wished / np.exp(np.mean(np.log(wished)))) ** (power - 1.0)).tolist()
+    return {axis: Share(share, share) for axis, share in zip(axes, shares, strict=True)}
 
 
 def _filter_s(points: Points, axis: str, speeds: Speeds) -> float:
@@ -226,6 +241,15 @@ def _gains(points: Points, axis: str, values: Mapping[str, Array], degrees: Mapp
     return LqgGains(a, b, k, l, g[0], inverse_g[0], largest_output(points.settings.axis(axis)))
 
 
+def _refusal(points: Points, gains: Mapping[str, LqgGains]) -> BadInput | None:
+    """What names operating point and margin that a loop does not hold, alone or with all others closed."""
+    try:
+        _judge(points, gains)
+    except BadInput as refused:
+        return refused
+    return None
+
+
 def _judge(points: Points, gains: Mapping[str, LqgGains]) -> None:
     """Raise BadInput naming operating point and margin that a loop does not hold, alone or with all others closed."""
     settings, sampled = points.settings, {axis: points.sampled(axis) for axis in gains}
@@ -257,7 +281,8 @@ CONTROLLER = EquationController(
         "but where a zero slower than the loop makes every quick step overshoot. Both "
         "are the cheapest of a prescribed stability: poles to the right of -alpha go to their mirror images there, all others stay. alpha "
         "is 1.85 times the slowest wished pole for the regulator and 8 times for the filter. Where |1/(1 + L)| of a loop, the others "
-        "closed, would pass 3, the regulators of all are slower, as far as an eighth. "
+        "closed, would pass 3, the regulators of all are slower, as far as an eighth; where that does not do, the faster loop is faster "
+        "and the slower one slower. "
         "It begins with the voltage that holds the arm where it is."
     ),
     equations=lambda table: Lqg(len(table.axes[0].gains.a)),

@@ -52,10 +52,18 @@ class Speeds:
     filter_rad_s: float
 
 
-def wished_speeds(wishes: AxisSettings, share: float) -> Speeds:
-    """Those that the wished poles ask for, of the regulator this share."""
+@dataclass(frozen=True)
+class Share:
+    """How much of the wished speed of each a regulator and its filter have."""
+
+    regulator: float
+    filter: float
+
+
+def wished_speeds(wishes: AxisSettings, share: Share) -> Speeds:
+    """This share of those that the wished poles ask for."""
     slowest_rad_s = float(np.min(np.abs(np.array(wishes.placed_rad_s))))
-    return Speeds(share * REGULATOR_SPEED * slowest_rad_s, FILTER_SPEED * slowest_rad_s)
+    return Speeds(share.regulator * REGULATOR_SPEED * slowest_rad_s, share.filter * (FILTER_SPEED * slowest_rad_s))
 
 
 def gains_at(plant: PlantPolynomials, speeds: Speeds) -> Gains:

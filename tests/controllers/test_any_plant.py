@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from controllers import loading
-from controllers.lqg_gains import wished_speeds
+from controllers.lqg_gains import Share, wished_speeds
 from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.settings import read_settings
@@ -151,12 +151,21 @@ def test_coupled_loops_are_slowed_down_until_they_hold_together() -> None:
     # Truth: both inputs of quanser_aero push both its axes, and at the wished speed the loops together are unstable or below a margin.
     for of, axis, is_slowed in (("quanser_aero", "pitch", True), ("aeroshield", "arm", False)):
         regulator_rad_s = designed("lqg", of).origin[axis]["regulator_rad_s"]
-        wished_rad_s = wished_speeds(read_settings(plant(of)).axis(axis), 1.0).regulator_rad_s
+        wished_rad_s = wished_speeds(read_settings(plant(of)).axis(axis), Share(1.0, 1.0)).regulator_rad_s
         assert (
             regulator_rad_s < 0.5 * wished_rad_s
             if is_slowed
             else regulator_rad_s == pytest.approx(wished_rad_s, rel=1e-6)
         )
+
+
+def test_where_no_common_speed_holds_both_the_loops_speeds_are_taken_apart() -> None:
+    # Truth: below the horizontal the elevation's input turns ce150_velagic's azimuth, which presses the arm down; alike, even at an eighth
+    # of their speeds, both loops have a pole at +0.04 rad/s. At 8 instead of 2 times the elevation's speed the azimuth holds it.
+    table = designed("lqg", "ce150_velagic")
+    demand_settling(plant("ce150_velagic"), table, CONTROLLERS["lqg"].float_law(table), "any plant")
+    speeds = [table.origin[axis]["regulator_rad_s"] for axis in ("elevation", "azimuth")]
+    assert speeds == pytest.approx([1.295 / 2.0, 2.0 * 2.59])
 
 
 SAME_EVERYWHERE = """
