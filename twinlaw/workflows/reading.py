@@ -21,11 +21,11 @@ def load_known_log(path: Path, bound: BoundPlant | None = None) -> RunLog:
     if bound is not None and plant == bound.nominal.name:
         return load_log(path, log_columns(bound.nominal))
     if plant not in MODELS:
-        known, remedy = (
+        expected, remedy = (
             f"one of {', '.join(MODELS)}",
             "name a known plant, or give the plant file of your own with --plant",
         )
         if bound is not None:
-            known, remedy = f"{bound.nominal.name!r}, or {known}", "give the log and the plant of one rig"
-        raise BadInput("plant", str(path.with_suffix(".toml")), repr(plant), known, remedy)
+            expected, remedy = repr(bound.nominal.name), "give the log and the plant of one rig"
+        raise BadInput("plant", str(path.with_suffix(".toml")), repr(plant), expected, remedy)
     return load_log(path, log_columns(MODELS[plant]()))

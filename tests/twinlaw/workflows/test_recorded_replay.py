@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from records.errors import BadInput
 from records.log import RunLog, save_log
 from tests.law_tables import ce150_table
 from tests.replay.firmware_flights import own, plant
@@ -22,6 +23,12 @@ def test_a_log_is_compared_and_what_explains_its_difference_is_said(tmp_path: Pa
     assert replay.sent is not None
     assert said is not None
     assert said.startswith("late.csv: the firmware sent its output one sample late")
+
+
+def test_a_log_of_a_plant_that_nobody_knows_is_told_with_the_plant_that_was_given(tmp_path: Path) -> None:
+    save_log(tmp_path / "own.csv", replace(own(), columns=replace(own().columns, plant="tank")))
+    with pytest.raises(BadInput, match="plant: got 'tank', expected 'ce150'; give the log and the plant of one rig"):
+        recorded_replay(tmp_path / "own.csv", ce150_table(), plant())
 
 
 def test_readings_of_zero_that_the_log_check_leaves_out_are_not_laid_on_the_firmware(tmp_path: Path) -> None:
