@@ -17,10 +17,14 @@ from logcheck.plant import plant_findings
 from logcheck.seams import seam_findings
 from logcheck.stamps import timing, timing_findings
 from logcheck.standing import locked_findings
+from logcheck.units.angle import angle_unit
 from logcheck.units.derived import rate_unit, reference_unit
+from logcheck.units.inputs import input_unit, machine_unit
+from logcheck.units.slip import greatest_of, slip
 from logcheck.values import excitations, saturations, value_findings
 from records.log import RunLog
 from sim.columns import log_columns
+from sim.equilibrium import equilibrium
 from tests.plants import bound
 
 STEP_RAD = 2.0 * np.pi / 4096.0
@@ -220,3 +224,34 @@ def test_rows_that_stand_in_two_logs_and_rigs_that_differ_are_seen_between_them(
     ((_, twice),) = duplicate_findings([one], ["a"], [other], ["b"])
     assert twice.finding.severity == REFUSE  # of rows to fit and rows to check on
     assert list(plant_pair_findings([one, one], ["a", "b"])) == []
+
+
+@pytest.mark.parametrize(("scale", "unit"), [(np.degrees(1.0), "degrees"), (1.0 / STEP_RAD, "encoder counts")])
+def test_an_angle_far_beyond_its_stops_is_told_with_its_unit(scale: float, unit: str) -> None:
+    # Truth: half a radian of the azimuth as 29 degrees and as 298 counts of a turn's 4096.
+    log = log_of()
+    found = list(angle_unit(replace(log, y=log.y * [1.0, scale]), "a", "phi_rad", PLANT, plant_facts(PLANT)))
+    assert kinds(found) == {"unit_slip": REFUSE}
+    assert f"phi_rad is in {unit}" in found[0].finding.sentence
+    assert not list(angle_unit(log, "a", "phi_rad", PLANT, plant_facts(PLANT)))
+
+
+def test_inputs_in_percent_and_in_machine_units_are_told() -> None:
+    # Truth: 7 of 10 V as 70 percent; what holds the arm level, as a share of 10 V.
+    log, facts = log_of(), plant_facts(PLANT)
+    (found,) = input_unit(replace(log, u=log.u * [10.0, 1.0]), "a", facts)
+    assert "u_M_V is in percent" in found.finding.sentence
+    held = float(equilibrium(PLANT, 0.0).u0[0])
+    level = replace(log, u=np.full_like(log.u, held / 10.0), y=np.zeros_like(log.y))
+    (found,) = machine_unit(level, "a", PLANT, facts)
+    assert "u_M_V is in machine units, 1 for 10 V" in found.finding.sentence
+    assert not list(input_unit(log, "a", facts))
+    assert not list(machine_unit(log, "a", PLANT, facts))
+
+
+def test_a_slip_spans_the_log_and_one_wild_row_is_no_size() -> None:
+    log = log_of()
+    span = slip(log, "a", "u_M_V", "it is in percent", "volt", "convert it").finding
+    assert (span.start_s, span.end_s, span.severity) == (log.t_s[0], log.t_s[-1], REFUSE)
+    values = np.append(np.full(1999, -2.0), 1e6)
+    assert greatest_of(values) == 2.0
