@@ -235,7 +235,7 @@ NEARLY_AS_GOOD = Limit(
     0.03,
     "share of the best's gain",
     "that another must promise to be worth a fit, in its place or alone, and that axes which yield must gain to be worth a search anew",
-    "pairs and triples of seeds 900006 and 900007; yields of 0.005 and 0.003, rigs that stick, doubled the time",
+    "pairs and triples of seeds 900006 and 900007; yields that gained 0.005 and 0.003 of it changed no name and doubled the time",
 )
 ASTRAY = Limit(
     1.5,

@@ -25,7 +25,7 @@ from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Search, search, with_twins
 from diagnosis.search.draughts import Draught, draught
 from diagnosis.search.lost_frames import with_losses
-from diagnosis.search.presliding_friction import needed, yielding
+from diagnosis.search.presliding_friction import changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
 from diagnosis.seeing import alarmed, alone_of, beside_noise, detected, seen_of
 from diagnosis.standing import confirmed_by, of_consequence
@@ -119,7 +119,7 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
 
     They are asked beside single effects first, as a rig that yields is searched in vain by a plant that sticks: there they must explain
     a good part of what an effect does, as what a second effect would explain often looks like yielding, and what is then found must
-    still need them. Beside what was found they must explain a share of it that may change a name, as all is sought anew then.
+    still need them.
     """
     begun = alone_of(seen)
     first = begun.best(decisions.ASKED)
@@ -129,8 +129,7 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):
             return again, further
     found = search(seen.case, seen.case.library.candidates, begun)
-    gained = found.fitted[0].evidence - seen.retuned.evidence
-    seen, again = _yielding(seen, found.fitted[: decisions.ASKED], decisions.NEARLY_AS_GOOD * gained)
+    seen, again = _yielding(seen, found.fitted[: decisions.ASKED])
     if again is None:
         return seen, found
     further = _searched(again)
@@ -143,8 +142,9 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     found; else None."""
     asked = list(found) if seen.retuned in found else [*found, seen.retuned]
     found_there = yielding(seen.case, asked, further)
-    seen = seen.because(*found_there.decisions)
-    if found_there.case is seen.case:
+    is_anew, rules = changes_names(found_there, found[0], seen.retuned)
+    seen = seen.because(*found_there.decisions, *rules)
+    if not is_anew:
         return seen, None
     again = beside_noise(detected(found_there.case, seen.checked, found_there.beside))
     return seen, replace(again, decisions=(*seen.decisions, *again.decisions))

@@ -78,6 +78,18 @@ def _rule(beside: FittedHypothesis, gain: float, limit: float) -> Decision:
     return held_against("axes_yield", of, gain, limit, "nats", "axes yield" if gain > limit else "axes stick")
 
 
+def changes_names(
+    there: Yielding, best: FittedHypothesis, plain: FittedHypothesis
+) -> tuple[bool, tuple[Decision, ...]]:
+    """Whether what is found where axes yield may have other names than the `best` where they stick: all is sought anew then; and the rule.
+    Beside these very names they must gain a share of what these gain over the plant alone."""
+    if there.beside is None or there.beside.effects != best.effects or not best.effects:
+        return there.beside is not None, ()
+    gain, least = there.beside.evidence - best.evidence, decisions.NEARLY_AS_GOOD * (best.evidence - plain.evidence)
+    outcome = "all is sought anew" if gain > least else "no name changes"
+    return gain > least, (held_against("yields_anew", " + ".join(best.effects), gain, least, "nats", outcome),)
+
+
 def needed(case: Case, best: FittedHypothesis) -> bool:
     """Whether a hypothesis found where axes yield is worth as much more as that must be, than the same under `case`, where they do not."""
     kept = {

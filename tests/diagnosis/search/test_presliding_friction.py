@@ -12,7 +12,7 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.presliding_friction import needed, yielding
+from diagnosis.search.presliding_friction import Yielding, changes_names, needed, yielding
 from records.log import RunLog
 from sim.added_effects import with_effects, without_effects
 from sim.bind import BoundPlant, bind
@@ -180,3 +180,18 @@ def test_a_speed_in_whole_counts_is_known_to_a_count(plant: BoundPlant, fly: Fly
     filter_input = filter_input_of(replace(log, extra={"omega_M_rad_s": speed}), plant.plant, library.outputs)
     single = filter_input.single[library.outputs.index("omega_M_rad_s")]
     assert np.sqrt(single) == pytest.approx(0.5 / np.sqrt(12.0), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("beside", "gain_nats", "anew"),
+    [(("a.b",), 20.0, False), (("a.b",), 40.0, True), (("a.c",), 20.0, True), ((), 20.0, True)],
+)
+def test_yields_beside_the_best_names_are_worth_a_search_where_they_may_change_them(
+    sticking: tuple[Case, FittedHypothesis], beside: tuple[str, ...], gain_nats: float, anew: bool
+) -> None:
+    # Truth by hand: the best gains 1000 nats over the plant alone, of which a name must gain 30 to stand beside or instead of it.
+    case, plain = sticking
+    best = replace(plain, effects=("a.b",), evidence=plain.evidence + 1000.0)
+    there = Yielding(case, replace(best, effects=beside, evidence=best.evidence + gain_nats), ())
+    assert changes_names(there, best, plain)[0] is anew
+    assert not changes_names(Yielding(case, None, ()), best, plain)[0]
