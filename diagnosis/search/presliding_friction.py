@@ -83,7 +83,7 @@ def changes_names(
 ) -> tuple[bool, tuple[Decision, ...]]:
     """Whether what is found where axes yield may have other names than the `best` where they stick: all is sought anew then; and the rule.
     Beside these very names they must gain a share of what these gain over the plant alone."""
-    if there.beside is None or there.beside.effects != best.effects or not best.effects:
+    if there.beside is None or set(there.beside.effects) != set(best.effects) or not best.effects:
         return there.beside is not None, ()
     gain, least = there.beside.evidence - best.evidence, decisions.NEARLY_AS_GOOD * (best.evidence - plain.evidence)
     outcome = "all is sought anew" if gain > least else "no name changes"
