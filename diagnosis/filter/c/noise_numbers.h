@@ -13,7 +13,7 @@ typedef struct {
     block information[MAX_NOISES];
 } noise_slopes_block;
 
-/* Of each state that is awake, the `count` others that move it: where its row of F may be other than 0. */
+/* The blocks in use; and of each state that is awake the `count` that move it, where its row of F may be other than 0. */
 typedef struct {
     noise_slopes_block by[MAX_NOISES / BLOCK];
     int blocks, count[N], mover[N][N];

@@ -62,8 +62,38 @@ static void part_speed_slopes(filter_state *at, const substep *part)
     }
 }
 
-/* F dP F' and what F's own slopes add, with half the noise before and half behind; `at->FP` is that of this step, and part->noise the
- * half. */
+/* F dP */
+static void multiply_left(const filter_state *at, noise_slopes_block *d)
+{
+    const int awake = at->states.awake, *const order = at->states.order;
+    for (int n = 0; n < awake; n++) {
+        const int i = order[n], count = at->noises.count[i], *const mover = at->noises.mover[i];
+        for (int m = 0; m < awake; m++) {
+            block sum = {0.0};
+            for (int l = 0; l < count; l++)
+                sum += at->F[i][mover[l]] * d->P[mover[l]][order[m]];
+            d->FP[i][order[m]] = sum;
+        }
+    }
+}
+
+/* (F dP) F', and what F's own slopes add by the F P of this step. */
+static void multiply_right(const filter_state *at, noise_slopes_block *d)
+{
+    const int awake = at->states.awake, *const order = at->states.order;
+    for (int m = 0; m < awake; m++) {
+        const int k = order[m], count = at->noises.count[k], *const mover = at->noises.mover[k];
+        for (int n = m; n < awake; n++) {
+            const int i = order[n];
+            block sum = d->kept[i] * at->FP[k][i] + d->kept[k] * at->FP[i][k];
+            for (int l = 0; l < count; l++)
+                sum += at->F[k][mover[l]] * d->FP[i][mover[l]];
+            d->P[i][k] = d->P[k][i] = sum;
+        }
+    }
+}
+
+/* Of the covariance over the substep, with half the noise before and half behind; part->noise is the half. */
 static void propagate_noise_slopes(filter_state *at, const substep *part)
 {
     const int awake = at->states.awake, *const order = at->states.order;
@@ -75,25 +105,8 @@ static void propagate_noise_slopes(filter_state *at, const substep *part)
             half[i] = (d->noise[i] - 2.0 * kept * part->noise[i] * d->kept[i]) / (1.0 + kept * kept);
             d->P[i][i] += half[i];
         }
-        for (int n = 0; n < awake; n++) {
-            const int i = order[n], count = at->noises.count[i], *const mover = at->noises.mover[i];
-            for (int m = 0; m < awake; m++) {
-                block sum = {0.0};
-                for (int l = 0; l < count; l++)
-                    sum += at->F[i][mover[l]] * d->P[mover[l]][order[m]];
-                d->FP[i][order[m]] = sum;
-            }
-        }
-        for (int m = 0; m < awake; m++) {
-            const int k = order[m], count = at->noises.count[k], *const mover = at->noises.mover[k];
-            for (int n = m; n < awake; n++) {
-                const int i = order[n];
-                block sum = d->kept[i] * at->FP[k][i] + d->kept[k] * at->FP[i][k];
-                for (int l = 0; l < count; l++)
-                    sum += at->F[k][mover[l]] * d->FP[i][mover[l]];
-                d->P[i][k] = d->P[k][i] = sum;
-            }
-        }
+        multiply_left(at, d);
+        multiply_right(at, d);
         for (int n = 0; n < awake; n++)
             d->P[order[n]][order[n]] += half[order[n]];
     }
@@ -118,6 +131,17 @@ static void spread_noise_slopes(filter_state *at, int axis, const double *g)
     for (int n = 0; n < count; n++)
         for (int m = 0; m < count; m++)
             d->P[moved[n]][moved[m]] += 0.5 * g[moved[n]] * g[moved[m]] * d->brought[axis];
+}
+
+/* What an innovation adds to Fisher's information. */
+static void inform(filter_state *at)
+{
+    for (int k = 0; k < at->request->noises; k++) {
+        const noise_slopes_block *const one = &at->noises.by[k / BLOCK];
+        const double spread = 0.5 * ((const double *)&one->spread)[k % BLOCK], turned = ((const double *)&one->nu)[k % BLOCK];
+        EACH(at, d)
+        d->information[k] += spread * d->spread + turned * d->nu;
+    }
 }
 
 /* One scalar measurement, as the filter took it (measurement.h), and its part of the score and of Fisher's information
@@ -153,14 +177,8 @@ static void correct_noise_slopes(filter_state *at, filter_correction given, cons
         if (given.place >= 0)
             d->score -= 0.5 * (1.0 - w * w) * d->spread + w * d->nu;
     }
-    if (given.place < 0)
-        return;
-    for (int k = 0; k < at->request->noises; k++) {
-        const noise_slopes_block *const one = &at->noises.by[k / BLOCK];
-        const double spread = 0.5 * ((const double *)&one->spread)[k % BLOCK], turned = ((const double *)&one->nu)[k % BLOCK];
-        EACH(at, d)
-        d->information[k] += spread * d->spread + turned * d->nu;
-    }
+    if (given.place >= 0)
+        inform(at);
 }
 
 #endif
