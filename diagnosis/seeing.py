@@ -50,18 +50,16 @@ def detected(case: Case, checked: Case | None, beside: FittedHypothesis | None =
         return seen
     seen = _with_names(seen)
     best = alone_of(seen.still or seen).best(1)[0]
-    again = plain_beside(case, best.fit)
+    again = plain_beside(case, best.fit, nominal)
     if again is None:
         return seen
     gain = evidence(again, case.library.effects) - seen.retuned.evidence
     better = gain > decisions.TAKEN_IN
     outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
-    return (
-        replace(scored(case, checked, again, (*between, rule)), beside=beside, held=held)
-        if better
-        else seen.because(rule)
-    )
+    if not better:
+        return seen.because(rule)
+    return replace(scored(case, checked, with_memory(case, again), (*between, rule)), beside=beside, held=held)
 
 
 def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:

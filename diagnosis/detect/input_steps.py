@@ -13,13 +13,13 @@ from diagnosis.detect.linearisation import Linearisation
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances
 from jobs.thread_map import thread_map
-from sim.paths.path import in_held_steps_of_each
+from sim.paths.path import counts_held
 
 Array = NDArray[np.float64]
 COUNT = 840  # some 0.5 % apart: 25 steps further a rounding must still fall alike
 SMALLEST, LARGEST = 0.004, 0.25  # of the input's range
 STEPS_APART = 1.004
-AT_ONCE = 280  # side by side: time
+ROWS = 128  # at once: with all steps side by side they stay in a processor's cache
 ASKED = 40  # by what they say for the size of their errors; of these what they gain is asked
 
 
@@ -64,21 +64,49 @@ def likely_steps(
     return found
 
 
+@dataclass(frozen=True, eq=False)
+class _Sent:
+    """One log's commands, a row for as long as one stands: `u` (rows,), what the innovations say to a unit of error there, `pull`
+    (rows,), and the `square` (rows,) of a unit's push."""
+
+    u: Array
+    pull: Array
+    square: Array
+
+
 def _promises(linearisation: Linearisation, way: _Rounded, steps: Array) -> Array:
     """The squared score (k,) of each step's errors over their sum of squares, the best of all kinds: what they gain but for how much of
-    them shows, which is much alike for errors that are as good as random."""
-    pulls = linearisation.pulls(way.target)
-    parts = np.split(steps, len(steps) // AT_ONCE)
+    them shows, which is much alike for errors that are as good as random. Errors count in steps: a step's size cancels."""
+    logs = [
+        _sent(filter_input, way.column, pull)
+        for filter_input, pull in zip(linearisation.filter_inputs, linearisation.pulls(way.target), strict=True)
+    ]
 
-    def over(part: Array, kind: Kind) -> Array:
-        score, squares = np.zeros(len(part)), np.zeros(len(part))
-        for filter_input, pull in zip(linearisation.filter_inputs, pulls, strict=True):
-            pushed = _errors(filter_input, way.column, part, kind)(slice(None))
-            score, squares = score - pull @ pushed, squares + np.einsum("ij,ij->j", pushed, pushed)
+    def by(kind: Kind) -> Array:
+        score, squares = (sum(sums) for sums in zip(*(_sums(log, steps, kind) for log in logs), strict=True))
         return np.asarray(np.maximum(score, 0.0) ** 2 / np.maximum(squares, 1e-300))
 
-    by_kind = [np.concatenate(thread_map(partial(over, kind=kind), parts)) for kind in way.kinds]
-    return np.asarray(np.max(by_kind, axis=0))
+    return np.asarray(np.max(thread_map(by, way.kinds), axis=0))
+
+
+def _sent(filter_input: FilterInput, column: int, pull: Array) -> _Sent:
+    u, h = filter_input.u[:, column], _durations_s(filter_input)
+    begins = np.flatnonzero(np.diff(u, prepend=np.nan) != 0.0)
+    return _Sent(u[begins], np.add.reduceat(pull * h, begins), np.add.reduceat(h * h, begins))
+
+
+def _sums(log: _Sent, steps: Array, kind: Kind) -> tuple[Array, Array]:
+    """Score and sum of squares (k,) of the errors of each step over one log."""
+    score, squares, level = np.zeros(len(steps)), np.zeros(len(steps)), None
+    for begin in range(0, len(log.u), ROWS):
+        part = slice(begin, begin + ROWS)
+        x = log.u[part, None] / steps + kind.shift
+        held = counts_held(x, kind.hold, level)
+        level = held[-1]
+        x -= held
+        score -= log.pull[part] @ x
+        squares += log.square[part] @ np.square(x, out=x)
+    return score, squares
 
 
 def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, kind: Kind) -> Array:
@@ -89,16 +117,13 @@ def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, kind: Kind
 def _errors(filter_input: FilterInput, column: int, steps: Array, kind: Kind) -> Disturbances:
     """Errors of an input by steps, over each of a filter input's own (instants, steps): those that the rig has move the innovations as
     its answer says; what the model would add moves them the other way."""
-    u, h = filter_input.u[:, column, None], np.append(np.diff(filter_input.t_s), 0.0)[:, None]
-    shift = kind.shift * steps
-    reached = in_held_steps_of_each(u + shift, steps, kind.hold) - shift
+    x, h = filter_input.u[:, column, None] / steps + kind.shift, _durations_s(filter_input)[:, None]
+    errors = steps * (x - counts_held(x, kind.hold))
+    return lambda part: np.asarray(errors[part] * h[part])
 
-    def disturbance(part: slice) -> Array:
-        errors: Array = u[part] - reached[part]
-        pushed: Array = errors * h[part]
-        return pushed
 
-    return disturbance
+def _durations_s(filter_input: FilterInput) -> Array:
+    return np.append(np.diff(filter_input.t_s), 0.0)
 
 
 def _target(linearisation: Linearisation, variable: sympy.Symbol) -> int | None:

@@ -50,15 +50,16 @@ def settled(case: Case, start: Hypothesis) -> Fit:
     return found
 
 
-def plain_beside(case: Case, named: Fit) -> Fit | None:
-    """The plant alone, fitted from the numbers that it has beside effects; None where it has none, or cannot follow its logs from there."""
+def plain_beside(case: Case, named: Fit, plain: Fit) -> Fit | None:
+    """The plant alone, fitted from the numbers that it has beside effects and with the kinds of noise that `plain`, fitted before, has; None
+    where it is beside none, or cannot follow its logs from there."""
     hypothesis = named.hypothesis
     names = case.added(hypothesis.effects)
     if not names:
         return None
     kept = {name: values for name, values in hypothesis.effects.items() if name not in names}
     try:
-        return with_memory(case, settled(case, hypothesis.with_effects(kept)))
+        return with_memory_of(case, settled(case, hypothesis.with_effects(kept)), plain.hypothesis)
     except BadInput:
         return None
 

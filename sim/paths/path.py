@@ -111,15 +111,16 @@ def in_held_steps(x: Array, step: float, hold: float, level: float | None) -> tu
     return np.array(y), at
 
 
-def in_held_steps_of_each(x: Array, steps: Array, hold: float) -> Array:
-    """The same of x (n, k) in several steps (k,) side by side, each from the nearest on: (n, k)."""
-    nearest = in_steps(x, steps)
+def counts_held(x: Array, hold: float, level: Array | None = None) -> Array:
+    """The same of x (n, k), signals side by side that are each counted in steps of its own: whole numbers (n, k); `level` (k,) is the one
+    before."""
+    counts: Array = np.rint(x)
     if hold == 0.0:
-        return nearest
-    away, y, at = (0.5 + hold) * steps, np.empty_like(nearest), nearest[0]
-    for k, wanted in enumerate(x):
-        at = y[k] = np.where(np.abs(wanted - at) > away, nearest[k], at)
-    return y
+        return counts
+    at = counts[0] if level is None else level
+    for k, away in enumerate(x):
+        at = counts[k] = np.where(np.abs(away - at) > 0.5 + hold, counts[k], at)
+    return counts
 
 
 def uniform(number: Array, seed: int) -> Array:

@@ -28,11 +28,11 @@ def named(case: Case, plain: Fit) -> Fit:
 
 def test_beside_a_name_that_is_none_the_plant_is_what_it_is_alone(case: Case) -> None:
     plain = nominal_fit(case)
-    again = plain_beside(case, named(case, plain))
+    again = plain_beside(case, named(case, plain), plain)
     assert again is not None
     assert not again.hypothesis.effects
     assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
-    assert plain_beside(case, plain) is None
+    assert plain_beside(case, plain, plain) is None
 
 
 def test_from_another_hill_the_plant_comes_back(case: Case) -> None:
@@ -43,7 +43,7 @@ def test_from_another_hill_the_plant_comes_back(case: Case) -> None:
     lost = fit(case, far, rounds=0)
     assert lost is not None
     assert lost.log_posterior < plain.log_posterior - 1000.0
-    again = plain_beside(case, replace(named(case, plain), hypothesis=far.with_effects(RUB)))
+    again = plain_beside(case, replace(named(case, plain), hypothesis=far.with_effects(RUB)), plain)
     assert again is not None
     assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
     assert np.all(np.abs(again.hypothesis.theta) < 3.0)
