@@ -45,12 +45,12 @@ class Colour:
     times_s: tuple[float, float]
 
 
-def with_colours(case: Case, found: Fit) -> Hypothesis:
-    """What was fitted with all noise with a memory that the logs tell of: each must gain what its two numbers cost in evidence, and is not
-    sought where the innovations foretell no more."""
+def with_colours(case: Case, found: Fit, asked: Sequence[Colour]) -> Hypothesis:
+    """What was fitted with all of the `asked` noise with a memory that the logs tell of: each must gain what its two numbers cost in
+    evidence, and is not sought where the innovations foretell no more."""
     hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
     left = foretold_of(case, hypothesis)
-    for colour in _colours(case):
+    for colour in asked:
         if left < COLOUR_COST:
             break
         starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
@@ -70,7 +70,7 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
 
 def coloured_noise_of(case: Case, hypothesis: Hypothesis) -> Hypothesis:
     """The hypothesis with the likeliest numbers of all noise that it has, white and with a memory."""
-    chosen = [colour for colour in _colours(case) if colour.of(hypothesis) is not None]
+    chosen = [colour for colour in colours(case) if colour.of(hypothesis) is not None]
     return _likeliest(case, hypothesis, chosen, white_noise(case, hypothesis))[0]
 
 
@@ -95,14 +95,14 @@ def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, flo
 
 
 def _likeliest(
-    case: Case, hypothesis: Hypothesis, colours: Sequence[Colour], white: Sequence[Number] = ()
+    case: Case, hypothesis: Hypothesis, chosen: Sequence[Colour], white: Sequence[Number] = ()
 ) -> tuple[Hypothesis, float]:
-    """The likeliest numbers of `colours` and of the white noise, without those colours that are too small to tell; and the log
+    """The likeliest numbers of the `chosen` and of the white noise, without those colours that are too small to tell; and the log
     likelihood."""
-    own = [number for colour in colours for number in (_size(colour), _time(colour))]
+    own = [number for colour in chosen for number in (_size(colour), _time(colour))]
     found, value = likeliest_numbers(case, hypothesis, [*white, *own])
     kept = found
-    for colour in colours:
+    for colour in chosen:
         kept = kept if _numbers(colour, kept)[0] > colour.least else colour.without(kept)
     return (found, value) if kept is found else (kept, likelihood_of(case, kept))
 
@@ -127,8 +127,12 @@ def _numbers(colour: Colour, hypothesis: Hypothesis) -> Numbers:
     return numbers
 
 
-def _colours(case: Case) -> Iterator[Colour]:
+def colours(case: Case) -> list[Colour]:
     """All that the rig may have: on axes that are not held in all logs, in outputs that any log has."""
+    return list(_colours(case))
+
+
+def _colours(case: Case) -> Iterator[Colour]:
     library = case.library
     held = set.intersection(*(set(flight.locked) for flight in case.flights))
     longest_s = decisions.LONGEST_PUSH_SHARE * max(float(np.ptp(flight.log.t_s)) for flight in case.flights)

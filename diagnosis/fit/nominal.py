@@ -1,7 +1,7 @@
 """The plant alone, fitted: what every other hypothesis is compared with."""
 
 from diagnosis import decisions
-from diagnosis.fit.coloured_noise import coloured_noise_of, with_colours
+from diagnosis.fit.coloured_noise import coloured_noise_of, colours, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
@@ -51,7 +51,7 @@ def settled(case: Case, start: Hypothesis) -> Fit:
 
 
 def plain_beside(case: Case, named: Fit, plain: Fit) -> Fit | None:
-    """The plant alone, fitted from the numbers that it has beside effects and with the kinds of noise that `plain`, fitted before, has; None
+    """The plant alone, fitted from the numbers that it has beside effects, with the kinds of noise that `plain`, fitted before, has; None
     where it is beside none, or cannot follow its logs from there."""
     hypothesis = named.hypothesis
     names = case.added(hypothesis.effects)
@@ -65,13 +65,15 @@ def plain_beside(case: Case, named: Fit, plain: Fit) -> Fit | None:
 
 
 def with_memory(case: Case, found: Fit) -> Fit:
-    """The fit with noise with a memory where the logs tell of it; asked anew beside what was taken, as errors of readings hide a torque
-    that comes and goes, and the other way round."""
+    """The fit with noise with a memory where the logs tell of it; what was not taken is asked anew beside what was, as errors of readings
+    hide a torque that comes and goes, and the other way round."""
+    asked = every = colours(case)
     for _ in range(SETTLING_ROUNDS):
-        coloured = with_colours(case, found)
+        coloured = with_colours(case, found, asked)
         if coloured is found.hypothesis:
             break
         found = _under(case, found, coloured)
+        asked = [colour for colour in every if colour.of(found.hypothesis) is None]
     return found
 
 
