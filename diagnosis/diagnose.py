@@ -10,9 +10,10 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
-from diagnosis.decide.consequence import foreseen, foreseen_rules, without_idle
+from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
+from diagnosis.decide.idle import shares_of, without_idle
 from diagnosis.decide.rows import EARLY, LATE, demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Tried, Weighed, first_share, likeliest, weigh
@@ -202,11 +203,11 @@ def _ranked(
     """
     tried = _tried(seen, found, beyond)
     fitted_ahead = foreseen(logs, tried)
-    weighed = weigh(without_idle(tried, fitted_ahead)[0], fitted_ahead)
+    weighed = weigh(without_idle(tried, shares_of(tried, fitted_ahead, logs, None))[0], fitted_ahead)
     matters_nats = weighed.ahead_nats
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     ahead = fitted_ahead if holdout is None else with_held_out(fitted_ahead, holdout)
-    tried, idle = without_idle(tried, ahead)
+    tried, idle = without_idle(tried, shares_of(tried, ahead, logs, holdout))
     weighed = replace(weigh(tried, ahead), ahead_nats=matters_nats)
     seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))
     if holdout is None or not weighed.fitted:

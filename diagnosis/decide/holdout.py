@@ -72,6 +72,15 @@ class Holdout:
         kept = {name: values for name, values in hypothesis.effects.items() if not happens(effects[name], values)}
         return hypothesis if len(kept) == len(hypothesis.effects) else hypothesis.with_effects(kept)
 
+    def errors_foreseen(self, hypothesis: Hypothesis) -> Errors:
+        """The errors of what a hypothesis says of these logs."""
+        return self._errors(self.foreseen(hypothesis))
+
+    @property
+    def readings(self) -> int:
+        """See `readings_of`."""
+        return readings_of(self.case)
+
     def score(self, hypothesis: Hypothesis) -> Score:
         """By how much a hypothesis predicts these logs better than `base`; by nothing where all that it names happened in other logs."""
         if self._named(hypothesis) and not self._named(self.foreseen(hypothesis)):
@@ -80,7 +89,7 @@ class Holdout:
 
     def score_of_plant(self, hypothesis: Hypothesis) -> Score:
         """The same of the plant that a hypothesis leaves for these logs, whatever it names: its parameters count too."""
-        return score(self._errors(self.foreseen(hypothesis)), self._errors(self.base.fit.hypothesis))
+        return score(self.errors_foreseen(hypothesis), self._errors(self.base.fit.hypothesis))
 
     def _named(self, hypothesis: Hypothesis) -> list[str]:
         """The effects of a hypothesis that `base` lacks, noise apart."""
@@ -137,9 +146,8 @@ def _outputs(case: Case) -> int:
 def with_held_out(ahead: Mapping[FittedHypothesis, float], holdout: Holdout) -> dict[FittedHypothesis, float]:
     """Nats by which each predicts the logs better than the plant alone: `ahead`, of the logs to explain, and those of the hold-out, in
     which what happened in other logs has no say."""
-    readings = readings_of(holdout.case)
     gains = thread_map(lambda entry: holdout.score(entry.fit.hypothesis).gain, list(ahead))
-    return {entry: nats + readings * gain for (entry, nats), gain in zip(ahead.items(), gains, strict=True)}
+    return {entry: nats + holdout.readings * gain for (entry, nats), gain in zip(ahead.items(), gains, strict=True)}
 
 
 def is_surely_better(told: Score) -> bool:

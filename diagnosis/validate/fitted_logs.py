@@ -20,14 +20,18 @@ class FittedLogs:
 
     case: Case
     judged: dict[Hypothesis, Errors] = field(default_factory=dict)
-    gains: dict[tuple[Hypothesis, Hypothesis], float] = field(default_factory=dict)
+    better: dict[tuple[Hypothesis, Hypothesis], Errors] = field(default_factory=dict)
 
     def gain(self, one: Hypothesis, other: Hypothesis) -> float:
-        """By how many nats a reading `one` predicts these logs better than `other` (score.py), each under its own noise or under that of
-        the other, whichever predicts better: noise is not what is asked."""
-        if (one, other) not in self.gains:
-            self.gains[one, other] = score(self._better(one, other), self._better(other, one)).gain
-        return self.gains[one, other]
+        """By how many nats a reading `one` predicts these logs better than `other` (score.py), each as `errors_beside` the other."""
+        return score(self.errors_beside(one, other), self.errors_beside(other, one)).gain
+
+    def errors_beside(self, hypothesis: Hypothesis, other: Hypothesis) -> Errors:
+        """The errors of a hypothesis under its own noise or under that of the other, whichever predicts better: noise is not what is
+        asked."""
+        if (hypothesis, other) not in self.better:
+            self.better[hypothesis, other] = self._better(hypothesis, other)
+        return self.better[hypothesis, other]
 
     @property
     def readings(self) -> int:

@@ -51,6 +51,10 @@ class Errors:
     grid: Array
     attainable: Array
 
+    def of_output(self, output: int) -> "Errors":
+        """Those of one output alone."""
+        return Errors(self.squares[..., [output]], self.grid[[output]], self.attainable[..., [output]])
+
 
 def errors_of(case: Case, hypothesis: Hypothesis, read: Callable[[Hypothesis], Sequence[Array]]) -> Errors:
     """The errors of a model over all windows of the logs of `case`; `read` are its predictions (rows, outputs) of each."""
@@ -78,6 +82,11 @@ def score(model: Errors, other: Errors) -> Score:
     gains = _gains(model, other, known, weights)
     own, best = (_log_rms(square, known, weights[:1]) for square in (model.squares, model.attainable))
     return Score(float(gains[0]), float(np.std(gains[1:])), float(_total(own - best)[0]))
+
+
+def by_output(model: Errors, other: Errors) -> list[Score]:
+    """The same of each output alone."""
+    return [score(model.of_output(place), other.of_output(place)) for place in range(len(model.grid))]
 
 
 def _drawn(model: Errors, other: Errors) -> tuple[NDArray[np.bool_], Array]:

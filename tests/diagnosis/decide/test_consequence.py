@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.consequence import foreseen, foreseen_rules, without_idle
+from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.weighing import Tried, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
@@ -107,66 +107,6 @@ def test_a_second_effect_predicts_what_the_first_leaves() -> None:
     weighed = Weighed((both, alone), (0.6, 0.01), 0.39, 0.0, 1.0)
     (rule,) = foreseen_rules(found, weighed)  # what is unlikely is not told
     assert (rule.of, rule.value) == ("arm.coulomb + arm.offset_force", pytest.approx(found[both]))
-
-
-def test_an_effect_that_does_a_small_part_of_what_its_name_does_is_left_out() -> None:
-    # Truth: dry friction alone. A scale of the sensor that is a tenth off predicts worse, whatever evidence it be said to have; beside it
-    # the friction is not idle, as nothing else was tried with one effect less.
-    rub = {"arm.coulomb": {"b": 4e-4}}
-    case = arm_case(arm_log(rub, seed=76))
-    alone, plain = settled(case, rub), settled(case, {})
-    wrong = alone.fit.hypothesis.with_effects({**rub, "theta_sensor.scale": {"scale": 1.1}})
-    both = FittedHypothesis(("arm.coulomb", "theta_sensor.scale"), replace(alone.fit, hypothesis=wrong), 1e6)
-    tried = Tried((both, alone), plain, case.library, 5.0)
-    ahead = foreseen(FittedLogs(case), tried)
-    found, (rule,) = without_idle(tried, ahead)
-    assert found.named == (alone,)
-    assert (rule.of, rule.outcome) == ("arm.coulomb + theta_sensor.scale", "theta_sensor.scale is left out")
-    assert without_idle(replace(tried, named=(both,)), {both: ahead[both]})[0].named == (both,)
-
-
-def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_idle() -> None:
-    # Truth by hand: without the second effect a parameter stands nine standard deviations from its file, six beyond what is free: 18 nats.
-    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
-    case = arm_case(arm_log({**rub, **pull}, seed=76))
-    both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
-    theta = alone.fit.hypothesis.theta.copy()
-    theta[0] = 9.0
-    bent = replace(alone, fit=replace(alone.fit, hypothesis=replace(alone.fit.hypothesis, theta=theta)))
-    # Of 40 nats each effect must do 4: with the friction alone at 40 + 13 nats the force does 5 of them, at 40 + 15 it does 3.
-    for nats, kept in ((13.0, (both, bent)), (15.0, (bent,))):
-        tried = Tried((both, bent), plain, case.library, 5.0)
-        assert without_idle(tried, {both: 40.0, bent: 40.0 + nats})[0].named == kept
-
-
-def test_an_effect_must_do_its_part_beside_any_that_it_stands_with() -> None:
-    # Truth by hand: the force alone predicts as well as both, whichever of the two is likelier by itself: friction is idle.
-    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
-    case = arm_case(arm_log(pull, seed=76))
-    both, rubbing, pulled, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, pull, {}))
-    rubbing, pulled = replace(rubbing, evidence=60.0), replace(pulled, evidence=50.0)
-    tried = Tried((both, rubbing, pulled), plain, case.library, 5.0)
-    found, (rule,) = without_idle(tried, {both: 40.0, rubbing: 5.0, pulled: 39.0})
-    assert found.named == (rubbing, pulled)
-    assert rule.outcome == "arm.coulomb is left out"
-    assert without_idle(tried, {both: 40.0, rubbing: 5.0, pulled: 30.0})[0].named == (both, rubbing, pulled)
-
-
-def test_what_an_idle_effect_explains_row_by_row_does_not_speak_against_what_predicts() -> None:
-    # Truth by hand: the force alone predicts as well as both. Friction predicts nothing, but explains rows by 640 nats, alone or beside.
-    rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
-    case = arm_case(arm_log(pull, seed=76))
-    both, rubbing, pulled, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, pull, {}))
-    at = plain.evidence
-    both, rubbing, pulled = (
-        replace(entry, evidence=at + nats) for entry, nats in ((both, 700.0), (rubbing, 640.0), (pulled, 50.0))
-    )
-    ahead = {both: 40.0, rubbing: 0.0, pulled: 39.0}
-    found, _ = without_idle(Tried((both, rubbing, pulled), plain, case.library, 5.0), ahead)
-    assert [found.evidence(entry) - at for entry in (rubbing, pulled)] == [640.0, 700.0]
-    weighed = weigh(found, ahead)
-    assert weighed.fitted[0] is pulled
-    assert weighed.ahead_nats == pytest.approx(39.0, abs=0.5)
 
 
 @pytest.mark.parametrize(
