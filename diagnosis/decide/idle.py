@@ -24,11 +24,17 @@ from records.reasons import Decision
 @dataclass(frozen=True)
 class Said:
     """What logs say of one effect in one output: `nats` by which the hypothesis predicts better than without it, with their standard
-    error `sd`, and `whole`, by which it does so better than the plant alone."""
+    error `sd`, and `whole`, by which it does so better than the plant alone; of so many `readings`."""
 
     nats: float
     sd: float
     whole: float
+    readings: int
+
+    @property
+    def sure(self) -> bool:
+        """Whether it surely predicts better."""
+        return self.nats > decisions.SURELY * self.sd
 
 
 Pair = tuple[FittedHypothesis, FittedHypothesis]  # a hypothesis and the same with one effect less
@@ -52,9 +58,9 @@ def shares_of(tried: Tried, asked: Iterable[FittedHypothesis], logs: FittedLogs,
 
 
 def _held_out(holdout: Holdout, entry: FittedHypothesis, fewer: FittedHypothesis) -> list[list[Said]]:
-    """What a hold-out says; nothing of what happened in other logs."""
-    foreseen = holdout.foreseen(entry.fit.hypothesis)
-    if not (set(entry.effects) - set(fewer.effects)) & set(foreseen.effects):
+    """What a hold-out says; nothing where it lacks a part of the hypothesis, that happened in other logs: what it did there is an error
+    beside which no other part shows."""
+    if set(entry.effects) - set(holdout.foreseen(entry.fit.hypothesis).effects):
         return []
     one, other, plain = (holdout.errors_foreseen(each.fit.hypothesis) for each in (entry, fewer, holdout.base))
     return [_said(holdout.readings, one, other, plain)]
@@ -62,7 +68,7 @@ def _held_out(holdout: Holdout, entry: FittedHypothesis, fewer: FittedHypothesis
 
 def _said(readings: int, one: Errors, other: Errors, plain: Errors) -> list[Said]:
     return [
-        Said(readings * further.gain, readings * further.sd, readings * whole.gain)
+        Said(readings * further.gain, readings * further.sd, readings * whole.gain, readings)
         for further, whole in zip(by_output(one, other), by_output(one, plain), strict=True)
     ]
 
@@ -70,9 +76,9 @@ def _said(readings: int, one: Errors, other: Errors, plain: Errors) -> list[Said
 def without_idle(tried: Tried, shares: Shares) -> tuple[Tried, tuple[Decision, ...]]:
     """What was tried, without hypotheses one of whose effects earns no name, and the rules.
 
-    In one output at least an effect must do FORMS_OFF of what the hypothesis predicts better, and surely so in the logs that were not
-    fitted, or in those that were where the others are silent. What parameters beyond their spread cost counts: where these leave it to
-    take an effect's part, it is not idle.
+    In one output at least an effect must do FORMS_OFF of what the hypothesis predicts better, and surely: in the logs that were not fitted,
+    or in those that were where the others cannot tell. What parameters beyond their spread cost counts: where these leave it to take an
+    effect's part, it is not idle.
     The same without an idle effect keeps the evidence that it has beside it: what that explains is there whatever its name.
     """
     idle = [
@@ -105,10 +111,17 @@ def _hardest(said: Sequence[Sequence[Said]], spared: float) -> tuple[float, floa
 
     def of_output(parts: Sequence[Said]) -> tuple[float, float]:
         share = decisions.FORMS_OFF * max(sum(part.whole for part in parts), 0.0)
-        surely = parts[-1].nats + spared, decisions.SURELY * parts[-1].sd
+        judge = parts[0] if len(parts) == 1 or _cannot_tell(*parts) else parts[1]
+        surely = judge.nats + spared, decisions.SURELY * judge.sd
         return min(surely, (sum(part.nats for part in parts) + spared, share), key=lambda pair: pair[0] - pair[1])
 
     return max((of_output(parts) for parts in zip(*said, strict=True)), key=lambda pair: pair[0] - pair[1])
+
+
+def _cannot_tell(fitted: Said, held_out: Said) -> bool:
+    """Whether logs that were not fitted are neither sure of an effect nor sure that it does less than in those that were."""
+    promised = fitted.nats * held_out.readings / fitted.readings
+    return not held_out.sure and held_out.nats + decisions.SURELY * held_out.sd >= promised
 
 
 def one_less(entry: FittedHypothesis, asked: Iterable[FittedHypothesis]) -> list[FittedHypothesis]:

@@ -60,7 +60,7 @@ def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_id
     # Of 40 nats each effect must do 4: where the friction alone predicts 13 nats better than both the force does 5, at 15 it does 3.
     for worse, kept in ((13.0, (both, bent)), (15.0, (bent,))):
         tried = Tried((both, bent), plain, pulled_case.library, 5.0)
-        assert without_idle(tried, {(both, bent): [[Said(-worse, SURE, 40.0)]]})[0].named == kept
+        assert without_idle(tried, {(both, bent): [[Said(-worse, SURE, 40.0, 100)]]})[0].named == kept
 
 
 def test_an_effect_must_do_its_part_beside_any_that_it_stands_with(
@@ -70,11 +70,11 @@ def test_an_effect_must_do_its_part_beside_any_that_it_stands_with(
     both, rubbing, pulled, plain = fitted
     rubbing, pulled = replace(rubbing, evidence=60.0), replace(pulled, evidence=50.0)
     tried = Tried((both, rubbing, pulled), plain, pulled_case.library, 5.0)
-    further = {(both, rubbing): [[Said(35.0, SURE, 40.0)]]}
-    found, (rule,) = without_idle(tried, {**further, (both, pulled): [[Said(1.0, SURE, 40.0)]]})
+    further = {(both, rubbing): [[Said(35.0, SURE, 40.0, 100)]]}
+    found, (rule,) = without_idle(tried, {**further, (both, pulled): [[Said(1.0, SURE, 40.0, 100)]]})
     assert found.named == (rubbing, pulled)
     assert (rule.outcome, rule.value, rule.limit) == ("arm.coulomb is left out", 1.0, pytest.approx(4.0))
-    shares = {**further, (both, pulled): [[Said(10.0, SURE, 40.0)]]}
+    shares = {**further, (both, pulled): [[Said(10.0, SURE, 40.0, 100)]]}
     assert without_idle(tried, shares)[0].named == (both, rubbing, pulled)
 
 
@@ -84,30 +84,44 @@ def test_what_a_large_effect_does_to_one_output_says_nothing_of_another(
     # Truth by hand: 400 nats of one output are the first effect's alone; of the 30 of the other the second does 12, which is plain to see.
     both, alone, _, plain = fitted
     tried = Tried((both, alone), plain, pulled_case.library, 5.0)
-    large = Said(0.5, 1.0, 400.0)
-    assert without_idle(tried, {(both, alone): [[large, Said(12.0, 3.0, 30.0)]]})[0].named == (both, alone)
-    assert without_idle(tried, {(both, alone): [[large, Said(2.0, 0.5, 30.0)]]})[0].named == (alone,)
+    large = Said(0.5, 1.0, 400.0, 100)
+    assert without_idle(tried, {(both, alone): [[large, Said(12.0, 3.0, 30.0, 100)]]})[0].named == (both, alone)
+    assert without_idle(tried, {(both, alone): [[large, Said(2.0, 0.5, 30.0, 100)]]})[0].named == (alone,)
 
 
-def test_an_effect_must_surely_predict_better_in_logs_that_were_not_fitted_where_these_have_a_say(
-    pulled_case: Case, fitted: tuple[FittedHypothesis, ...]
+@pytest.mark.parametrize(
+    ("said", "kept"),
+    [
+        ([(33.0, 11.0, 40.0, 100)], True),
+        ([(39.0, 24.0, 40.0, 100)], False),
+        ([(39.0, 24.0, 40.0, 100), (6.0, 2.5, 8.0, 50)], True),
+        ([(33.0, 11.0, 40.0, 100), (2.0, 3.0, 3.0, 50)], False),
+        ([(33.0, 11.0, 40.0, 100), (2.0, 9.0, 3.0, 50)], True),
+        ([(33.0, 11.0, 40.0, 100), (0.0, 0.1, 0.0, 50)], False),
+        ([(39.0, 24.0, 40.0, 100), (2.0, 9.0, 3.0, 50)], False),
+    ],
+    ids=[
+        "sure, where nothing is held out",
+        "unsure there",
+        "the logs held out are sure",
+        "they are sure that it does less than the 16.5 nats which it should",
+        "they cannot tell: between 16 nats worse and 20 better",
+        "it does nothing in them",
+        "neither can tell",
+    ],
+)
+def test_an_effect_must_surely_predict_better_in_logs_that_were_not_fitted_where_these_can_tell(
+    pulled_case: Case,
+    fitted: tuple[FittedHypothesis, ...],
+    said: list[tuple[float, float, float, int]],
+    kept: bool,
 ) -> None:
-    # Truth by hand: twice its standard error is sure. 33 nats that a hold-out does not bear out are what happened once; where it is silent,
-    # as of an event, the logs that were fitted say so alone; what they are not sure of a hold-out may be.
+    # Truth by hand: twice its standard error is sure.
     both, alone, _, plain = fitted
     tried = Tried((both, alone), plain, pulled_case.library, 5.0)
-    sure, unsure = Said(33.0, 11.0, 40.0), Said(39.0, 24.0, 40.0)
-    borne_out, not_borne_out = Said(6.0, 2.5, 8.0), Said(2.0, 3.0, 3.0)
-    for said, kept in (
-        ([sure], True),
-        ([unsure], False),
-        ([sure, borne_out], True),
-        ([sure, not_borne_out], False),
-        ([unsure, borne_out], True),
-    ):
-        found, rules = without_idle(tried, {(both, alone): [[part] for part in said]})
-        assert (found.named == (both, alone)) is kept
-        assert len(rules) == (not kept)
+    found, rules = without_idle(tried, {(both, alone): [[Said(*part)] for part in said]})
+    assert (found.named == (both, alone)) is kept
+    assert len(rules) == (not kept)
 
 
 def test_what_logs_held_out_refute_does_not_stand_beside_what_they_bear_out() -> None:
@@ -143,7 +157,7 @@ def test_what_an_idle_effect_explains_row_by_row_does_not_speak_against_what_pre
         replace(entry, evidence=at + nats) for entry, nats in zip(fitted, (700.0, 640.0, 50.0), strict=False)
     )
     tried = Tried((both, rubbing, pulled), plain, pulled_case.library, 5.0)
-    shares = {(both, rubbing): [[Said(40.0, SURE, 40.0)]], (both, pulled): [[Said(1.0, SURE, 40.0)]]}
+    shares = {(both, rubbing): [[Said(40.0, SURE, 40.0, 100)]], (both, pulled): [[Said(1.0, SURE, 40.0, 100)]]}
     found, _ = without_idle(tried, shares)
     assert [found.evidence(entry) - at for entry in (rubbing, pulled)] == [640.0, 700.0]
     weighed = weigh(found, {both: 40.0, rubbing: 0.0, pulled: 39.0})
