@@ -15,9 +15,8 @@ BELL = 0.32
 LEAST_CHANGES = 3  # of a reading: fewer say nothing of how long it usually takes
 
 
-def behind_play(filter_input: FilterInput, output: int, width: float, step: float, stated: float) -> FilterInput:
-    """The filter input where an output's readings, counts of `step` and of the variance `stated` by themselves, follow it behind play of
-    that width.
+def behind_play(filter_input: FilterInput, output: int, width: float, step: float) -> FilterInput:
+    """The filter input where an output's readings, counts of `step`, follow it behind play of that width.
 
     While the axis crosses the play its reading stands: all readings of such a stretch are off by one error, and what they scatter is noise.
     """
@@ -26,7 +25,7 @@ def behind_play(filter_input: FilterInput, output: int, width: float, step: floa
     read = filter_input.read[seen, output]
     # What noise does back and forth, a count and the range of n readings, 2 sqrt(2 ln n) standard deviations, is no motion: play that is no
     # wider shows in nothing.
-    reach = step + 2.0 * float(np.sqrt(2.0 * max(single - stated, 0.0) * np.log(max(len(read), 1))))
+    reach = step + 2.0 * float(np.sqrt(2.0 * max(single - step**2 / 12.0, 0.0) * np.log(max(len(read), 1))))
     if width <= reach:
         return filter_input
     way, moved = pushing(read, reach), _moves(read, reach) != 0.0

@@ -62,10 +62,8 @@ def _unrounded(library: EffectLibrary, filter_input: FilterInput, stage: OutputS
 
 
 def _through_play(library: EffectLibrary, filter_input: FilterInput, stage: Play) -> FilterInput:
-    plant, name = library.bound.plant, library.outputs[stage.output]
-    return behind_play(
-        filter_input, stage.output, stage.width, plant.sensors.get(name, 0.0), variance_stated(plant, name)
-    )
+    step = library.bound.plant.sensors.get(library.outputs[stage.output], 0.0)
+    return behind_play(filter_input, stage.output, stage.width, step)
 
 
 def unsure_when(filter_input: FilterInput, output: int, jitter_s: float, stated: float) -> FilterInput:

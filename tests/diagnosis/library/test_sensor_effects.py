@@ -180,8 +180,8 @@ def test_play_that_is_no_wider_than_what_noise_does_is_no_play() -> None:
     angle, rng = 0.3 * np.sin(np.linspace(0.0, 12.0, 6000)), np.random.default_rng(6)
     for noise, hidden in ((0.0, 0.9), (2.0, 16.0)):
         plain = readings(STEP * np.round(angle / STEP + noise * rng.standard_normal(len(angle))))
-        assert behind_play(plain, 0, hidden * STEP, STEP, STEP**2 / 12) is plain
-        assert np.any(behind_play(plain, 0, 40.0 * STEP, STEP, STEP**2 / 12).r > plain.r)
+        assert behind_play(plain, 0, hidden * STEP, STEP) is plain
+        assert np.any(behind_play(plain, 0, 40.0 * STEP, STEP).r > plain.r)
 
 
 @pytest.mark.parametrize("noise", [0.0, 1.0, 2.0])
@@ -192,7 +192,7 @@ def test_noise_that_moves_counts_back_and_forth_is_no_reversal_behind_play(noise
     rng = np.random.default_rng(6)
     read = played(angle, width, None)[0] + noise * STEP * rng.standard_normal(len(angle))
     plain = readings(STEP * np.round(read / STEP))
-    behind = behind_play(plain, 0, width, STEP, STEP**2 / 12)
+    behind = behind_play(plain, 0, width, STEP)
     sure = behind.r[:, 0] < 1.01 * plain.r[:, 0]
     assert sure.mean() > 0.6
     off = behind.y[sure, 0] - angle[sure]
@@ -205,7 +205,7 @@ def test_play_charges_nothing_for_readings_that_stand_but_once_a_stretch() -> No
     # the first reading, the top, the last one. Of an axis that moves three counts a row none lies beside an edge.
     up, still = 3.0 * STEP * np.arange(50), np.full(30, 147.0 * STEP)
     plain = readings(np.concatenate([up, still, up[::-1][1:]]))
-    behind = behind_play(plain, 0, 20.0 * STEP, STEP, STEP**2 / 12)
+    behind = behind_play(plain, 0, 20.0 * STEP, STEP)
     widened = plain.r[:, 0] < 0.99 * behind.r[:, 0]
     own = 0.5 * np.log(behind.r[widened, 0] / plain.r[widened, 0]).sum()
     assert behind.known - plain.known - own == pytest.approx(-0.32 * 3, abs=0.02)
@@ -216,7 +216,7 @@ def test_play_charges_for_standing_once_a_stretch() -> None:
     # the first readings, the top. A reading that is a count off its stretch costs 2 nats, half a step off an edge; each holds one at most.
     up, still = STEP * np.arange(50), np.full(30, 49 * STEP)
     plain = readings(np.concatenate([up, still, up[::-1][1:]]))
-    behind = behind_play(plain, 0, 20.0 * STEP, STEP, STEP**2 / 12)
+    behind = behind_play(plain, 0, 20.0 * STEP, STEP)
     widened = plain.r[:, 0] < 0.99 * behind.r[:, 0]
     own = 0.5 * np.log(behind.r[widened, 0] / plain.r[widened, 0]).sum()
     charged = plain.known + own - behind.known
