@@ -24,7 +24,8 @@ from records.reasons import Decision
 @dataclass(frozen=True)
 class Said:
     """What logs say of one effect in one output: `nats` by which the hypothesis predicts better than without it, with their standard
-    error `sd`, and `whole`, by which it does so better than the plant alone; of so many `readings`."""
+    error `sd`, and `whole`, by which it does so better than the plant alone but for a grid that readings show, of which no form can be a
+    little off; of so many `readings`."""
 
     nats: float
     sd: float
@@ -69,7 +70,7 @@ def _held_out(holdout: Holdout, entry: FittedHypothesis, fewer: FittedHypothesis
 def _said(readings: int, one: Errors, other: Errors, plain: Errors) -> list[Said]:
     return [
         Said(readings * further.gain, readings * further.sd, readings * whole.gain, readings)
-        for further, whole in zip(by_output(one, other), by_output(one, plain), strict=True)
+        for further, whole in zip(by_output(one, other), by_output(replace(one, grid=plain.grid), plain), strict=True)
     ]
 
 

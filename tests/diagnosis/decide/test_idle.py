@@ -137,6 +137,18 @@ def test_what_logs_held_out_refute_does_not_stand_beside_what_they_bear_out() ->
     assert without_idle(tried, shares_of(tried, tried.named, logs, holdout))[0].named == (alone,)
 
 
+def test_a_grid_that_readings_show_makes_no_other_effect_a_small_part() -> None:
+    # Truth: an arm that rubs, read in steps of 20 mrad where 1 mrad is stated. The grid alone is worth ln 20 = 3 nats a reading, of which
+    # friction, that does all of what is predicted better, would be a small part.
+    coarse = {"theta_sensor.quantization": {"q": 20e-3}}
+    case = arm_case(arm_log({**RUB, **coarse}, seed=63))
+    both, read, plain = (settled(case, effects) for effects in ({**RUB, **coarse}, coarse, {}))
+    tried, logs = Tried((both, read), plain, case.library, 5.0), FittedLogs(case)
+    ((said,),) = (parts[0] for parts in shares_of(tried, tried.named, logs, None).values())
+    assert logs.gain(both.fit.hypothesis, plain.fit.hypothesis) * logs.readings > 2.0 * said.whole
+    assert said.nats == pytest.approx(said.whole, rel=0.5)
+
+
 def test_a_hold_out_is_silent_of_what_happened_in_other_logs() -> None:
     # Truth: an arm that rubs in all logs, and was pushed once in those that were fitted.
     push = {"arm.disturbance": {"torque": 2e-3, "t_0": 4.0, "duration": 1.5}}
