@@ -60,10 +60,9 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
     best, first = next(noisy, (None, None))
     if best is None or first is None:
         return []
-    sizes = {len(entry.effects) for entry in fitted}
-    leading = [max((e for e in fitted if len(e.effects) == size), key=lambda e: e.evidence) for size in sizes]
-    others = _in_reach(case, best, first, [entry for entry in fitted if entry not in (best, *leading)])
-    found = [first, *_all_noisy(case, [entry for entry in (*leading, *others) if entry is not best], first)]
+    sizes = sorted({len(entry.effects) for entry in fitted})
+    groups = [[entry for entry in fitted if len(entry.effects) == size] for size in sizes]
+    found = [entry for group in groups for entry in _noisy_of_a_size(case, group, best, first)]
     known, likeliest = {frozenset(entry.effects) for entry in found}, max(found, key=lambda entry: entry.evidence)
     fewer = [
         entry
@@ -97,6 +96,19 @@ def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesi
 def _fit_under(case: Case, fitted: FittedHypothesis, known: FittedHypothesis, rounds: int) -> Fit | None:
     """The fit after so many rounds under the noise of another; None where the filter fails."""
     return fit(case, as_noisy(case, fitted.fit.hypothesis, known.fit.hypothesis), rounds=rounds)
+
+
+def _noisy_of_a_size(
+    case: Case, group: Sequence[FittedHypothesis], best: FittedHypothesis, first: FittedHypothesis
+) -> list[FittedHypothesis]:
+    """Hypotheses of one number of effects with their noise, the likeliest and what comes near it; `first` is the `best` of all with its
+    own."""
+    own = max(group, key=lambda entry: entry.evidence)
+    noisy = first if own is best else _own_noise(case, own, first)
+    if noisy is None:
+        return []
+    others = _in_reach(case, own, noisy, [entry for entry in group if entry is not own])
+    return [noisy, *_all_noisy(case, others, first)]
 
 
 def _own_noise(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> FittedHypothesis | None:
