@@ -38,7 +38,7 @@ LATE, EARLY = 1, -1
 NUMBERS = {1: "one row", 2: "two rows", 3: "three rows"}
 OTHER_ROWS = ("columns_late", "columns_early")  # kinds of notes
 # Of what is told, that a move must promise to be fitted: fits of eight moves in spent sealed cases gained a third less to a third more.
-PROMISED_SHARE = 0.5
+FITTED_FROM = 0.5
 Array = NDArray[np.float64]
 
 
@@ -179,7 +179,7 @@ def misplaced(asked: Asked) -> tuple[Moved | None, tuple[float, ...]]:
     slips = (*asked.commands, *_one_column(len(model.inputs), len(model.outputs)))
     promised = dict(zip(slips, thread_map(asked.promised, slips), strict=True))
     commands = tuple(promised[slip] for slip in asked.commands)
-    least = PROMISED_SHARE * decisions.COLUMNS_TOLD
+    least = FITTED_FROM * decisions.COLUMNS_TOLD
     likelier = sorted((slip for slip in slips if promised[slip] > least), key=lambda slip: -promised[slip])
     ones = thread_map(asked.moved, likelier[: decisions.ASKED])
     for one in sorted(ones, key=lambda one: (-one.follows, -one.gain)):
