@@ -39,8 +39,9 @@ def proposed(contents: Contents, columns: LogColumns, said: Mapping[str, str]) -
     needed = [name for name in (*columns.inputs, *columns.outputs) if name not in said]
     time = None if "t_s" in said else _time(contents, free)
     free.pop(time or "", None)
-    if len(free) == len(needed) and all(re.fullmatch(r"c\d+|.*\)", name) for name in free):
-        chosen = dict(zip(needed, free, strict=True))  # a matrix or a table without a header: in the order of a run log
+    if len(free) >= len(needed) and all(re.fullmatch(r"c\d+|.*\)", name) for name in free):
+        # A matrix or a table without a header: in the order of a run log, whose references and speeds stand behind what is needed.
+        chosen = dict(zip(needed, free, strict=False))
     else:
         chosen = _most_alike(needed, free)
     chosen |= {column: f"{name}*FACTOR" for column, name in chosen.items() if _may_bear_a_unit(column, name)}

@@ -153,6 +153,18 @@ def test_a_signal_of_the_name_in_another_quantity_is_proposed_with_a_factor_to_b
         log_of_contents(Contents(signals), "rig.csv", ColumnMapping(), columns_of("ce150"))
 
 
+def test_columns_without_names_are_proposed_in_the_order_of_a_run_log_references_behind_them() -> None:
+    """Truth: seven columns, as `run` writes them without its header, and as NumPy saves them in one array."""
+    table = np.column_stack([0.01 * np.arange(50), *np.random.default_rng(1).normal(size=(6, 50))])
+    plain = {f"c{i + 1}": Signal(column) for i, column in enumerate(table.T)}
+    with pytest.raises(BadInput) as refused:
+        log_of_contents(Contents(plain), "rig.csv", ColumnMapping(), columns_of("ce150"))
+    said = "--column t_s=c1 --column u_M_V=c2 --column u_T_V=c3 --column psi_rad=c4 --column phi_rad=c5"
+    assert refused.value.remedy.endswith(said)
+    with pytest.raises(BadInput, match=r"'phi_rad=array\(:,5\)'"):
+        log_of_contents(Contents({"array": Signal(table)}), "rig.npy", ColumnMapping(), columns_of("ce150"))
+
+
 def test_a_signal_is_shown_with_what_the_file_calls_it_where_that_is_another_name() -> None:
     t_s = 0.01 * np.arange(50)
     signals = {
