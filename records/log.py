@@ -292,6 +292,13 @@ def _check_columns(names: tuple[str, ...], where: str, columns: LogColumns) -> N
         raise BadInput("header", where, "a column twice", "each column once", "remove the second")
 
 
+def _no_number(values: Array, bad: NDArray[np.intp]) -> str:
+    """The first of the values at the places `bad`, and in how many rows such stand."""
+    first = float(values[bad[0]])
+    told = "nan or an empty cell" if np.isnan(first) else repr(first)
+    return told if len(bad) == 1 else f"{told}, and no number in {len(bad) - 1} more row{'s' if len(bad) > 2 else ''}"
+
+
 def _check_numbers(data: Mapping[str, Array], kept: NDArray[np.bool_], where: str, columns: LogColumns) -> None:
     """Raise BadInput for a number that cannot be, in an input only where its rows are `kept` (n,)."""
     for name in ("t_s", *columns.inputs, *(["seq"] if "seq" in data else [])):
@@ -300,9 +307,9 @@ def _check_numbers(data: Mapping[str, Array], kept: NDArray[np.bool_], where: st
             raise BadInput(
                 f"column {name!r}",
                 f"{where}, line {bad[0] + 2}",
-                repr(float(data[name][bad[0]])),
+                _no_number(data[name], bad),
                 "a finite number",
-                "remove the row",
+                "remove such rows" + (", or write what the controller sent there" if name in columns.inputs else ""),
             )
     if "seq" in data and np.any(data["seq"] != np.round(data["seq"])):
         row = int(np.flatnonzero(data["seq"] != np.round(data["seq"]))[0])
