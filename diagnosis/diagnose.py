@@ -14,7 +14,7 @@ from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.idle import shares_of, without_idle
-from diagnosis.decide.rows import EARLY, LATE, demand_rows, rows_in_doubt
+from diagnosis.decide.rows import demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Tried, Weighed, first_share, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -60,26 +60,20 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
 def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:
     """What is to be known of the columns of the logs to explain; raises BadInput where they are not what they are called."""
     nominal, where = seen.retuned.fit, "the logs to explain"
-    rows = () if _in_their_rows(firmware) else _rows(seen, where, _ways(firmware))
+    rows = () if _in_their_rows(firmware) else _rows(seen, where)
     return (*demand_wiring(seen.case, nominal, plain_fit, where), *rows)
 
 
-def _rows(seen: Seen, where: str, ways: tuple[int, ...]) -> tuple[Note, ...]:
+def _rows(seen: Seen, where: str) -> tuple[Note, ...]:
     """What is to be known of the rows of the columns; where inputs seem to move between rows, also of commands that are held, and late."""
     held = seen.held
-    told = demand_rows(held.case, held.fit, where, ways, held.beaten) if held else ()
-    return told or demand_rows(seen.case, seen.retuned.fit, where, ways)
+    told = demand_rows(held.case, held.fit, where, beaten=held.beaten) if held else ()
+    return told or demand_rows(seen.case, seen.retuned.fit, where)
 
 
 def _in_their_rows(firmware: Firmware | None) -> bool:
     """Whether the controller's own code shows that each command stands in the row of its time."""
     return firmware is not None and firmware.bit_exact
-
-
-def _ways(firmware: Firmware | None) -> tuple[int, ...]:
-    """Commands may be logged late; early too where the controller's own code says so, else the plant itself may be late."""
-    is_early = firmware is not None and (firmware.cause or "").startswith("early_output")
-    return (LATE, EARLY) if is_early else (LATE,)
 
 
 def _nothing(seen: Seen, material: Material, reason: Exit, holdout: Holdout | None = None) -> Result:

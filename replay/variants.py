@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 Change = Callable[[Setup], Setup]
 Round = Callable[[float], float]
 
-LATE_OUTPUT = "late_output"
+LATE_OUTPUT, EARLY_OUTPUT = "late_output", "early_output"
 COUNTED = ("no", "one", "two", "three", "four", "five")
 
 
@@ -68,9 +68,8 @@ def _timing(table: ControllerTable) -> Iterator[Variant]:
         )
         late = f"sent its output {what} late, or the log has it so"
         yield Variant(LATE_OUTPUT, "output", late, partial(replace, output_lag=samples))
-    yield Variant(
-        "early_output", "output", "has each output logged one row before its angles", partial(replace, output_lag=-1)
-    )
+        early = f"would have sent its output {what} before it read the angles, so the log has it early"
+        yield Variant(EARLY_OUTPUT, "output", early, partial(replace, output_lag=-samples))
 
 
 def _other_tables(table: ControllerTable, others: Sequence[ControllerTable]) -> Iterator[Variant]:

@@ -341,6 +341,28 @@ def test_what_the_firmware_did_otherwise_is_said_before_the_plant(cause: str, fi
     assert cause.partition(":")[0] not in text_of(told)
 
 
+def test_what_running_the_firmware_again_showed_is_said_once_with_the_name_of_its_log() -> None:
+    """Truth: flight.csv was sent one sample late and other.csv lost a sample: each cause stands once, with its log."""
+    late = "the firmware sent its output one sample late, or the log has it so"
+    notes = [
+        Note("firmware", "flight.csv", {}, f"flight.csv: {late}"),
+        Note("firmware", "other.csv", {}, "other.csv: lost one"),
+    ]
+    told = replace(WORDS, firmware=Firmware(True, False, 0.01, f"late_output: {late}"), note_records=notes)
+    summary = summary_text(told)
+    assert summary.count(late) == 1
+    assert (
+        "firmware: Run again on the logged measurements of flight.csv, the controller's own code first differs at 0.01 s.\n"
+        in summary
+    )
+    assert summary.count("other.csv: lost one") == 1
+    assert f"flight.csv: {late}" not in text_of(told)
+    unknown = replace(
+        told, firmware=Firmware(True, False, 0.01, "not_found: no other firmware gives all"), note_records=()
+    )
+    assert summary_text(unknown).count("no other firmware gives all") == 1
+
+
 def test_what_a_replay_says_of_the_log_alone_is_no_finding_of_the_firmware() -> None:
     told = replace(WORDS, firmware=Firmware(True, False, 1.0, "log_rounding: the log rounded its inputs"))
     assert verdict_sentence(told).startswith("The rig has")

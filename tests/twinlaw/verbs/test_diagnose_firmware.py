@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from records.diagnosis import Diagnosis, load_diagnosis
+from records.errors import BadInput
 from records.files import write_atomic
 from records.log import save_log
 from records.table import table_text
@@ -134,3 +135,17 @@ def test_another_firmware_than_the_tables_own_law_flies_no_closed_loop_again(
     _, material = read_material(Path("plants/ce150.toml"), [], [_held_out(tmp_path, controller())])
     (table,) = material.tables
     assert (None if table is None else table.digest) == flown_by
+
+
+@pytest.mark.parametrize("rows", [1, 2])
+def test_commands_in_rows_before_their_angles_are_refused_where_the_controllers_own_code_shows_it(
+    tmp_path: Path, rows: int
+) -> None:
+    # Truth: the table's own law flew; in the log each command stands in the row of an angle that it does not know yet.
+    log = flown(host_law(TABLE), TABLE, 5.0)
+    write_atomic(tmp_path / "controller.json", table_text(TABLE))
+    save_log(tmp_path / "run.csv", replace(log, u=log.u[np.minimum(np.arange(len(log.u)) + rows, len(log.u) - 1)]))
+    with pytest.raises(
+        BadInput, match=f"would have sent its output {'one sample' if rows == 1 else 'two samples'} before"
+    ):
+        read_material(Path("plants/ce150.toml"), [tmp_path / "run.csv"], [])

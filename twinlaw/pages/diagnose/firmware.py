@@ -1,11 +1,15 @@
 """What a diagnosis says of the firmware: whether it was run again, whether it did as its table says, and what that makes doubtful."""
 
+from collections.abc import Sequence
+
 from records.diagnosis import Firmware
+from records.reasons import Note
 from replay.columns import OF_THE_COLUMNS
 from replay.firmware import CLEARED, NOT_FOUND
 from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
 from replay.variants import LATE_OUTPUT
 
+KIND = "firmware"  # of notes: what running it again shows of one log
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
 _OF_THE_LOG = (*CLEARED, "begins_in_flight", "fused_multiply_add")
 # What firmware and log cannot be told apart in: the plant may have been given other inputs than were logged.
@@ -21,19 +25,45 @@ def differs(firmware: Firmware | None) -> bool:
     return cause.partition(":")[0] not in _OF_THE_LOG and _ROWS_LACK not in cause
 
 
-def firmware_in_words(firmware: Firmware | None) -> str:
-    """What running the controller's own code again showed, in one sentence."""
+def firmware_in_words(firmware: Firmware | None, notes: Sequence[Note] = ()) -> str:
+    """What running the controller's own code again showed, in one sentence; of which log, where a note says the same of it."""
     if firmware is None:
         return "No log names a controller's table, so no controller's code was run again."
-    again, cause = "Run again on the logged measurements, the controller's own code", _cause(firmware)
+    again, cause = _again(firmware, notes), _cause(firmware)
     if not firmware.replayed:
         return f"The controller's code was not run again, so nothing is known of the firmware: {cause or 'its table is not at hand'}."
     if firmware.bit_exact:
         return f"{again} gives every logged input to the bit: the firmware is cleared."
     if (firmware.cause or "").partition(":")[0] in CLEARED:
         return _closed(f"{again} agrees with all that the log holds: {cause}")
-    at = "" if firmware.first_difference_s is None else f" first differs at {firmware.first_difference_s:g} s"
-    return _closed(f"{again}{at or ' was compared'}: {cause or 'cause not found'}")
+    return _closed(f"{again} {_compared(firmware)}: {cause or 'cause not found'}")
+
+
+def firmware_behind_the_first(firmware: Firmware, notes: Sequence[Note]) -> str:
+    """The same for a reader of `firmware_first`: without the cause that stands there."""
+    cause = _cause(firmware)
+    if not cause or cause not in firmware_first(firmware):
+        return firmware_in_words(firmware, notes)
+    return f"{_again(firmware, notes)} {_compared(firmware)}."
+
+
+def beside_firmware(firmware: Firmware | None, notes: Sequence[Note]) -> list[Note]:
+    """The notes without the one that says of a log what is said of the firmware."""
+    return [note for note in notes if firmware is None or not _says_the_same(note, firmware)]
+
+
+def _says_the_same(note: Note, firmware: Firmware) -> bool:
+    return note.kind == KIND and note.said == f"{note.subject}: {_cause(firmware)}"
+
+
+def _again(firmware: Firmware, notes: Sequence[Note]) -> str:
+    of = next((f" of {note.subject}" for note in notes if _says_the_same(note, firmware)), "")
+    return f"Run again on the logged measurements{of}, the controller's own code"
+
+
+def _compared(firmware: Firmware) -> str:
+    at_s = firmware.first_difference_s
+    return "was compared" if at_s is None else f"first differs at {at_s:g} s"
 
 
 def firmware_first(firmware: Firmware | None) -> str:

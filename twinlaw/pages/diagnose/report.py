@@ -9,7 +9,7 @@ from sim.model import Model
 from twinlaw.pages.block_diagram import block_diagram
 from twinlaw.pages.diagnose.answers import answers_section
 from twinlaw.pages.diagnose.causes import causes_section
-from twinlaw.pages.diagnose.firmware import differs, firmware_in_words
+from twinlaw.pages.diagnose.firmware import beside_firmware, differs, firmware_in_words
 from twinlaw.pages.diagnose.pictures import Predicted, curves, maps, shape_section
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import Moved, retuned_sentence
@@ -36,7 +36,7 @@ def diagnosis_page(
 ) -> Page:
     """The whole page; `stories` gives one plain sentence for each effect, `logs` the names of the files that were diagnosed, `shape` the
     curve of an effect without a name, `moved` the plant's own numbers that moved most, `widths` see `sized`."""
-    firmware = Section("Firmware", (firmware_in_words(diagnosis.firmware),))
+    firmware = Section("Firmware", (firmware_in_words(diagnosis.firmware, diagnosis.note_records),))
     amiss = differs(diagnosis.firmware)
     quality = diagnosis_quality(diagnosis)
     sections: list[Section | None] = [firmware] if amiss else []
@@ -116,5 +116,6 @@ def _unseen(diagnosis: Diagnosis) -> Section | None:
 
 
 def _notes(diagnosis: Diagnosis) -> Section | None:
-    others = plain_notes([note for note in diagnosis.note_records if note.kind not in (UNSEEN, HIDDEN)])
+    notes = beside_firmware(diagnosis.firmware, diagnosis.note_records)
+    others = plain_notes([note for note in notes if note.kind not in (UNSEEN, HIDDEN)])
     return Section("Notes", others) if others else None

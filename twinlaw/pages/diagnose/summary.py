@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from records.diagnosis import Diagnosis
 from twinlaw.cli import console
 from twinlaw.pages.diagnose.answers import surest_answer
-from twinlaw.pages.diagnose.firmware import firmware_first, firmware_in_words
+from twinlaw.pages.diagnose.firmware import beside_firmware, firmware_behind_the_first, firmware_first
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import Moved, lowered, moved_in_words, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
@@ -58,8 +58,8 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
         within = "" if interval is None else f" (95 %: {interval[0]:.0%} to {interval[1]:.0%})"
         yield f"hold-out: {diagnosis.shrinkage.fraction:.0%} of the removable error gone{within}"
     if diagnosis.firmware is not None:
-        yield f"firmware: {firmware_in_words(diagnosis.firmware)}"
-    yield from plain_notes(diagnosis.note_records)
+        yield f"firmware: {firmware_behind_the_first(diagnosis.firmware, diagnosis.note_records)}"
+    yield from plain_notes(beside_firmware(diagnosis.firmware, diagnosis.note_records))
     yield quality_sentence(diagnosis_quality(diagnosis))
 
 

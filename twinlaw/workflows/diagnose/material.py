@@ -16,11 +16,12 @@ from records.reasons import Note
 from records.table import ControllerTable
 from replay.firmware import FirmwareReplay
 from replay.table import replay_log, table_of
+from replay.variants import EARLY_OUTPUT
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from toolchain.memory import keep_freed_memory
-from twinlaw.pages.diagnose.firmware import differs
+from twinlaw.pages.diagnose.firmware import KIND, differs
 
 
 def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) -> tuple[BoundPlant, Material]:
@@ -46,6 +47,7 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     demand(integrity)
     paths = (*logs, *holdout)
     replays = [_replayed(*entry) for entry in zip(read, paths, integrity.logs, strict=True)]
+    _demand_causal(paths, replays)
     firmware, told = _firmware(paths, replays)
     timed, counted = from_their_start([as_read(*entry) for entry in zip(read, integrity.logs, strict=True)], names)
     used, begins = [~entry.excluded for entry in integrity.logs], [entry.begins for entry in integrity.logs]
@@ -75,6 +77,19 @@ def _replayed(log: RunLog, path: Path, looked: LogIntegrity) -> FirmwareReplay |
     return whole if differs(None if read is None else read.record()) else read
 
 
+def _demand_causal(paths: Sequence[Path], replays: Sequence[FirmwareReplay | None]) -> None:
+    """Raise BadInput where the controller's own code gives the logged commands only in later rows: none answers what it has yet to read."""
+    for path, replay in zip(paths, replays, strict=True):
+        if replay is not None and EARLY_OUTPUT in (replay.cause or "").split(" + "):
+            raise BadInput(
+                "columns",
+                str(path),
+                f"commands in rows before those of the angles that they answer: {replay.sentence}",
+                "columns in the rows of their time",
+                "move the commands down, or the angles and references up",
+            )
+
+
 def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> ControllerTable | None:
     """The table whose law flew a hold-out log; None where another firmware did: its error in the closed loop is not the model's."""
     own = table_of(log, path)
@@ -90,5 +105,5 @@ def _firmware(
         return None, ()
     worst = min((replay for _, replay in found), key=lambda replay: (replay.bit_exact, replay.replayed))
     return worst.record(), tuple(
-        Note("firmware", name, {}, f"{name}: {replay.sentence}") for name, replay in found if replay.sentence
+        Note(KIND, name, {}, f"{name}: {replay.sentence}") for name, replay in found if replay.sentence
     )
