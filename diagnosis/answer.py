@@ -20,6 +20,7 @@ from diagnosis.explain.notes import notes_of
 from diagnosis.explain.places import place_shares
 from diagnosis.explain.sentences import sentences
 from diagnosis.explain.sparse import suggestion
+from diagnosis.explain.whole_rows import whole_rows
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
@@ -37,7 +38,8 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     predicted = () if judged.holdout is None else judged.holdout.predicted(judged.chosen)
     holdout = judged.holdout
     kept = holdout.notes if holdout is not None and judged.chosen is holdout.base else ()
-    notes = (*judged.notes, *kept, *notes_of(case, seen.score_tests, judged.chosen, weighed))
+    slipped = whole_rows(case, judged.chosen, material.firmware)
+    notes = (*judged.notes, *kept, *slipped, *notes_of(case, seen.score_tests, judged.chosen, weighed))
     diagnosis = Diagnosis(
         verdict="gap",
         false_alarm_probability=seen.detection.p,
