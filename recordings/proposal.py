@@ -2,7 +2,7 @@
 
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import SequenceMatcher
 from functools import cache
 
@@ -39,13 +39,19 @@ def proposed(contents: Contents, columns: LogColumns, said: Mapping[str, str]) -
     needed = [name for name in (*columns.inputs, *columns.outputs) if name not in said]
     time = None if "t_s" in said else _time(contents, free)
     free.pop(time or "", None)
-    if len(free) >= len(needed) and all(re.fullmatch(r"c\d+|.*\)", name) for name in free):
-        # A matrix or a table without a header: in the order of a run log, whose references and speeds stand behind what is needed.
+    if len(free) >= len(needed) and _are_one_table(free):
+        # One matrix or a table without a header: in the order of a run log, whose references and speeds stand behind what is needed.
         chosen = dict(zip(needed, free, strict=False))
     else:
         chosen = _most_alike(needed, free)
     chosen |= {column: f"{name}*FACTOR" for column, name in chosen.items() if _may_bear_a_unit(column, name)}
     return [*([_option("t_s", time)] if time else []), *(_option(name, chosen.get(name, "SIGNAL")) for name in needed)]
+
+
+def _are_one_table(names: Iterable[str]) -> bool:
+    """Whether signals are columns of one matrix, array(:,1) and array(:,2), or of a table without a header, c1 and c2."""
+    parted = [re.fullmatch(r"(.*)\([:,\d]+\)|(c)\d+", name) for name in names]
+    return all(parted) and len({found.groups() for found in parted if found}) == 1
 
 
 def _most_alike(needed: Sequence[str], free: Mapping[str, Signal]) -> dict[str, str]:

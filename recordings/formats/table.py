@@ -8,6 +8,7 @@ from typing import Protocol, cast
 
 from recordings.formats import apart, compressed
 from recordings.formats.optional import is_installed, missing
+from recordings.formats.text.decoding import binary_kind
 from recordings.layout import TextLayout
 from recordings.signals import Contents
 from records.errors import BadInput
@@ -33,6 +34,11 @@ class Format:
     package: str | None = None
     extra: str = ""
     apart: bool = False
+
+    @property
+    def is_binary(self) -> bool:
+        """Whether no file of it is plain text."""
+        return self.module not in ("text.delimited", "json_rows")
 
 
 FORMATS: Mapping[tuple[str, ...], Format] = {
@@ -111,24 +117,47 @@ def read(path: Path, asked: TextLayout) -> Contents:
             "export it as one of these, or call a table of text .csv",
         )
     entry = _BY_SUFFIX[suffix]
+    if entry.is_binary and _is_text(path):
+        return _of_text(path, asked)
     if asked != TextLayout() and entry.module != "text.delimited":
         got = f"--separator, --decimal or --skip for a {entry.called}"
         raise BadInput("option", str(path), got, "these for tables of text alone", "leave them out")
     if entry.package and not is_installed(entry.package):
         raise missing(entry.package, entry.extra, path)
-    if entry.apart:
-        return apart.read(entry.module, path, entry.called)
-    return cast(Reader, import_module(f"recordings.formats.{entry.module}")).read(path, asked)
+    try:
+        if entry.apart:
+            return apart.read(entry.module, path, entry.called)
+        return cast(Reader, import_module(f"recordings.formats.{entry.module}")).read(path, asked)
+    except BadInput as error:
+        raise _of_another_kind(path, entry) or error from error
+
+
+def _of_another_kind(path: Path, entry: Format) -> BadInput | None:
+    """What is said of a file that could not be read, where it begins as one of another format does."""
+    kind = binary_kind(_start(path))
+    if kind is None or entry.called in kind:
+        return None
+    return BadInput(
+        entry.called,
+        str(path),
+        f"{kind}, by its first bytes",
+        f"a file of the kind {path.suffix}",
+        "give it its own ending",
+    )
 
 
 def _is_text(path: Path) -> bool:
-    """Whether a file under an ending of its own begins as text does: without a zero byte."""
+    """Whether a file under an ending of another kind begins as text does: without a zero byte, and not as a known binary one."""
+    start = _start(path)
+    return bool(start) and b"\0" not in start and binary_kind(start) is None
+
+
+def _start(path: Path) -> bytes:
     try:
         with path.open("rb") as stream:
-            start = stream.read(4096)
+            return stream.read(4096)
     except OSError:
-        return False
-    return bool(start) and b"\0" not in start
+        return b""
 
 
 def _of_text(path: Path, asked: TextLayout) -> Contents:

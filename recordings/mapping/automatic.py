@@ -4,7 +4,7 @@ import re
 import shlex
 from collections.abc import Mapping
 
-from recordings.mapping.names import PATH, Ambiguous, find, without_device
+from recordings.mapping.names import PATH, Ambiguous, find, is_under, without_device
 from recordings.mapping.source import Source
 from recordings.signals import Signal
 from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
@@ -37,10 +37,17 @@ def ambiguous(several: Mapping[str, Ambiguous], of: Source) -> BadInput:
     name, error = next(iter(several.items()))
     first = max(error.candidates, key=lambda candidate: of.signals[candidate].values.shape[0])
     shown = "; ".join(" or ".join(_described(one, of) for one in found.candidates[:6]) for found in several.values())
-    group = first[: -len(name)].rstrip(PATH) if first.endswith(name) else ""
+    group = first[: -len(name)].rstrip(PATH) if first.endswith(name) else _outermost(first, several)
     or_group = f", or --group {group.removeprefix('group')} for all" if group else ""
     remedy = f"say which: --column {shlex.quote(f'{name}={first}')}{or_group}"
     return BadInput(f"names {', '.join(several)}", of.where, f"several signals: {shown[:600]}", "one for each", remedy)
+
+
+def _outermost(name: str, several: Mapping[str, Ambiguous]) -> str:
+    """What a signal lies in from the outside, where under it each of the names is one signal alone; else nothing."""
+    group = re.split(rf"[{re.escape(PATH)}\[(]", name)[0]
+    alone = all(sum(is_under(one, group) for one in found.candidates) == 1 for found in several.values())
+    return group if alone else ""
 
 
 def _described(name: str, of: Source) -> str:

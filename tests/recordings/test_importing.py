@@ -163,6 +163,25 @@ def test_columns_without_names_are_proposed_in_the_order_of_a_run_log_references
     assert refused.value.remedy.endswith(said)
     with pytest.raises(BadInput, match=r"'phi_rad=array\(:,5\)'"):
         log_of_contents(Contents({"array": Signal(table)}), "rig.npy", ColumnMapping(), columns_of("ce150"))
+    pairs = {name: Signal(table[:, [0, i + 1]]) for i, name in enumerate(("u_M", "u_T", "psi", "phi"))}
+    with pytest.raises(BadInput) as refused:
+        log_of_contents(Contents(pairs), "rig.mat", ColumnMapping(), columns_of("ce150"))
+    assert "psi_rad=psi(:," in refused.value.remedy  # each array is a signal with its times: names before the order
+    assert "u_T_V=u_T(:," in refused.value.remedy
+
+
+def test_signals_known_by_their_labels_in_several_scopes_are_asked_for_by_the_scope() -> None:
+    """Truth: two scopes of the same four signals, each known by its label."""
+    scopes = {
+        f"{scope}.signals({i + 1}).values": Signal(RUN[name], clock=f"{scope}.time", heading=name)
+        for scope in ("Scope", "Scope1")
+        for i, name in enumerate(("u_M_V", "u_T_V", "psi_rad", "phi_rad"))
+    }
+    contents = Contents({"Scope.time": Signal(T_S), "Scope1.time": Signal(T_S), **scopes})
+    with pytest.raises(BadInput) as refused:
+        log_of_contents(contents, "rig.mat", ColumnMapping(), CE150)
+    assert refused.value.remedy.endswith(", or --group Scope for all")
+    np.testing.assert_allclose(log_of_contents(contents, "rig.mat", ColumnMapping(group="Scope1"), CE150).log.t_s, T_S)
 
 
 def test_a_signal_is_shown_with_what_the_file_calls_it_where_that_is_another_name() -> None:

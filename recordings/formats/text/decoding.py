@@ -14,18 +14,26 @@ MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
+# By their first bytes; each names the formats of formats/table.py that begin so.
 BINARY = {
-    b"PK\x03\x04": "a zipped file, such as an Excel workbook",
+    b"PK\x03\x04": "a zipped file, such as an Excel workbook or a NumPy file",
     b"\xd0\xcf\x11\xe0": "an old Excel workbook",
     b"MATLAB": "a MATLAB file",
     b"MDF  ": "an MDF file",
-    b"\x89HDF": "an HDF5 file",
+    b"\x89HDF": "an HDF5 file or a MATLAB file of version 7.3",
     b"PAR1": "a Parquet file",
     b"\x1f\x8b": "a file that gzip has packed",
-    b"\x55Log": "a log of PX4",
+    b"\x55Log": "a PX4 log",
     b"\x89MCAP": "an MCAP file",
     b"SQLite format 3": "a data base, such as a ROS bag",
+    b"#ROSBAG": "a ROS bag",
+    b"TDSm": "a TDMS file",
 }
+
+
+def binary_kind(start: bytes) -> str | None:
+    """What a file that begins so is, where it is one of BINARY."""
+    return next((what for mark, what in BINARY.items() if start.startswith(mark)), None)
 
 
 def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
@@ -36,11 +44,9 @@ def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
         raise BadInput(
             "text file", str(path), error.strerror or str(error), "a readable file", "check the path"
         ) from error
-    for start, what in BINARY.items():
-        if content.startswith(start):
-            raise BadInput(
-                "text file", str(path), what, "a table of text", "export it as CSV, or give it its own ending"
-            )
+    kind = binary_kind(content)
+    if kind is not None:
+        raise BadInput("text file", str(path), kind, "a table of text", "export it as CSV, or give it its own ending")
     encoding = next((encoding for mark, encoding in MARKS if content.startswith(mark)), None)
     whole = content.rstrip(b"\0")  # a logger that lost power leaves the rest of its block empty
     if encoding is None and b"\0" not in whole:

@@ -235,7 +235,7 @@ def test_a_package_that_is_not_installed_is_named_with_its_extra(
     suffix: str, entry: Format, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, entry.package or "", None)
-    (tmp_path / f"run{suffix}").write_bytes(b"x")
+    (tmp_path / f"run{suffix}").write_bytes(b"x\0")  # a table of text under that ending needs none
     for read in (imported_here, import_file):
         with pytest.raises(BadInput, match=rf"no package {entry.package} .*twinlaw\[{entry.extra}\]"):
             read(tmp_path / f"run{suffix}", ColumnMapping())

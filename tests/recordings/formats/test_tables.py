@@ -55,6 +55,23 @@ def test_recordings_behind_one_another_are_counted_on_and_a_part_is_one_of_them(
     np.testing.assert_allclose(second.column("psi_rad"), 0.5 * t_s, atol=1e-12)
 
 
+@pytest.mark.parametrize("ending", [".mat", ".parquet", ".npz", ".mf4", ".xlsx", ".ulg"])
+def test_a_table_of_text_under_the_ending_of_another_kind_is_read_and_said(tmp_path: Path, ending: str) -> None:
+    log = tmp_path / f"run{ending}"
+    log.write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(f"{t:.2f},5,1,{t:.2f},0" for t in T_S))
+    done = import_file(log, ColumnMapping())
+    np.testing.assert_allclose(done.log.column("psi_rad"), T_S, atol=0.005)
+    assert f"the ending '{ending}': taken as a table of text" in done.found
+
+
+@pytest.mark.parametrize("ending", [".mat", ".npy", ".json", ".csv"])
+def test_a_file_of_one_format_under_the_ending_of_another_is_refused_by_what_it_is(tmp_path: Path, ending: str) -> None:
+    log = tmp_path / f"run{ending}"
+    log.write_bytes(b"PAR1\x15\x04\x15\x80\0\x01\xff")
+    with pytest.raises(BadInput, match=r"got a Parquet file.*give it its own ending"):
+        import_file(log, ColumnMapping())
+
+
 def test_a_packed_table_is_read_and_half_of_one_is_refused(tmp_path: Path) -> None:
     text = "t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(f"{t:.2f},5,1,{t},0" for t in T_S)
     packed = gzip.compress(text.encode())
