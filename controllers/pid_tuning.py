@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from controllers.equations.designing import Points, mean_speed_rad_s
 from controllers.equations.judging import demand_held_at_rest
+from controllers.pid_phase import lag_rad, most_lag_rad
 from design.discretise import SampledPlant
 from design.loop import plant_polynomials
 from records.errors import BadInput
@@ -35,6 +36,9 @@ DERIVATIVE_SHARE = 10.0  # Td / Tf
 FREQUENCIES = 160
 BISECTIONS = 12
 _RATIOS = np.geomspace(1.0, 0.01, 12)[::-1]  # of k_i to its most with real zeros, where bisection starts
+# Of a gain to its start, which crosses one at the wished speed: 1e6 times less, no loop is left; without an end a search that nothing holds
+# goes on to gains of 0.
+WIDEST = 1e6
 _STARTS = (0.25, 0.5, 1.0)  # crossovers as shares of the wished poles' geometric mean
 
 
@@ -79,11 +83,25 @@ def tune(points: Points, axis: str) -> Tuning:
             k_p, k_i, k_d = found
             filter_s, reached = _filter_s(loop, k_p, k_d), _sensitivity(loop, k_p, k_i, k_d)
             return Tuning(sign * k_p, sign * k_i, sign * k_d, filter_s, reached, Ms_max)
-    remedy = f"{_narrower(points)}choose another controller: three gains hold about two states"
+    wished = points.settings.loop(axis)
     raise BadInput(
-        f"PID of the {axis}", f"plant {points.bound.plant.name!r}", "no gains with that robustness at every operating point",
-        f"max |1/(1 + L)| <= {SENSITIVITIES[-1]:g}", remedy,
-    )  # fmt: skip
+        f"PID of the {axis}",
+        f"plant {points.bound.plant.name!r}",
+        f"no gains with that robustness at every operating point: up to {speed_rad_s:.2g} rad/s, the geometric mean of its wished poles, "
+        f"{wished.output} lags {wished.input} by {_least_lag_deg(loop):.0f} deg and more",
+        f"max |1/(1 + L)| <= {SENSITIVITIES[-1]:g}, which this PID can give where the lag is {_most_lag_deg():.0f} deg at most",
+        f"{_narrower(points)}choose another controller: three gains hold about two states",
+    )
+
+
+def _least_lag_deg(loop: _Loop) -> float:
+    """The least lag of the plant at the frequencies where its loop may cross a gain of one, at the operating point where that is most."""
+    slow = loop.z[~loop.is_fast]
+    return math.degrees(max(float(lag_rad(plant, slow).min()) for plant in loop.plants))
+
+
+def _most_lag_deg() -> float:
+    return math.degrees(most_lag_rad(DERIVATIVE_SHARE, SENSITIVITIES[-1]))
 
 
 def _narrower(points: Points) -> str:
@@ -103,12 +121,17 @@ def _best(loop: _Loop, speed_rad_s: float, bound: float) -> tuple[float, float, 
     for share in _STARTS:
         start = _start(loop, share * speed_rad_s)
         options = {"maxiter": 60, "xatol": 1e-3, "fatol": 1e-3}
-        found = minimize(cost, np.log(start), method="Nelder-Mead", options=options)
+        found = minimize(cost, np.log(start), method="Nelder-Mead", bounds=_within(start), options=options)
         k_p, k_d = (float(value) for value in np.exp(found.x))
         k_i = float(_largest_integral(loop, k_p, k_d, bound))
         if k_i > 0.0 and (best is None or k_i > best[1]):
             best = k_p, k_i, k_d
     return best
+
+
+def _within(start: tuple[float, float]) -> list[tuple[float, float]]:
+    """Where the logarithms of the gains are looked for."""
+    return [(math.log(gain) - math.log(WIDEST), math.log(gain) + math.log(WIDEST)) for gain in start]
 
 
 def _start(loop: _Loop, crossover_rad_s: float) -> tuple[float, float]:

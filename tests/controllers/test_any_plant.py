@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from controllers import loading
+from controllers import loading, pid_tuning
 from controllers.lqg_gains import Share, wished_speeds
 from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
@@ -293,13 +293,19 @@ def test_loops_that_are_robust_alone_and_unstable_together_are_refused_in_words(
         CONTROLLERS["pid"].design(plant("quanser_aero"), read_settings(plant("quanser_aero")))
 
 
-def test_what_three_gains_cannot_hold_is_refused_in_words(tmp_path: Path) -> None:
+def test_what_three_gains_cannot_hold_is_refused_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Truth: four integrators in a row lag by 360 deg; a PID gives back less than 90.
     path = CHAIN.write(tmp_path, "chain")
     path.write_text(path.read_text() + CHAIN_WISHES)
     chain = bind(load_plant(path))
+    asked: list[float] = []
+    sensitivity = pid_tuning._sensitivity
+    monkeypatch.setattr(pid_tuning, "_sensitivity", lambda loop, *k: (asked.append(k[0]), sensitivity(loop, *k))[1])
     with pytest.raises(
-        BadInput, match=r"PID of the cart: got no gains with that robustness .* three gains hold about two states"
+        BadInput,
+        match=r"PID of the cart: got no gains with that robustness .*x_m lags u_N_s2 by 360 deg.* the lag is 217 deg at most; .*two states",
     ):
         CONTROLLERS["pid"].design(chain, read_settings(chain))
+    # A search that finds nothing would else go on to gains of 0, and divide by them.
+    assert min(asked) > 0.1 * asked[0] / pid_tuning.WIDEST
     assert np.isfinite(CONTROLLERS["lqg"].design(chain, read_settings(chain)).axes[0].gains.y_max_rad)
