@@ -25,6 +25,19 @@ def differs(firmware: Firmware | None) -> bool:
     return cause.partition(":")[0] not in _OF_THE_LOG and _ROWS_LACK not in cause
 
 
+def amiss(firmware: Firmware | None) -> str:
+    """What is amiss where firmware and log do not agree, in a few words; empty where they do."""
+    if firmware is None or not differs(firmware):
+        return ""
+    if _of_the_columns(firmware) or (firmware.cause or NOT_FOUND).startswith(NOT_FOUND):
+        return "the log does not hold what the firmware of its table computes"
+    return "the firmware does not do as its table says"
+
+
+def _of_the_columns(firmware: Firmware) -> bool:
+    return (firmware.cause or "").partition(":")[0].split(" + ")[0] in _OF_THE_COLUMNS
+
+
 def firmware_in_words(firmware: Firmware | None, notes: Sequence[Note] = ()) -> str:
     """What running the controller's own code again showed, in one sentence; of which log, where a note says the same of it."""
     if firmware is None:
@@ -76,7 +89,7 @@ def firmware_first(firmware: Firmware | None) -> str:
             f"The log holds commands{since} that the firmware of its table does not compute: where they differ, "
             "a cause named in the plant is doubtful."
         )
-    if firmware.cause is not None and firmware.cause.partition(":")[0].split(" + ")[0] in _OF_THE_COLUMNS:
+    if _of_the_columns(firmware):
         return (
             f"The log does not hold what the firmware of its table computes: {_cause(firmware)}. "
             "What seems to be amiss in the plant may come from that."

@@ -2,7 +2,7 @@
 
 from records.diagnosis import Diagnosis
 from records.quality import MISFIT, Colour, Look, Quality, flag
-from twinlaw.pages.diagnose.firmware import differs
+from twinlaw.pages.diagnose.firmware import amiss
 from twinlaw.pages.diagnose.retune import parameters_alone
 from twinlaw.pages.diagnose.words import doubts_in_words, misfits, words
 
@@ -10,8 +10,8 @@ from twinlaw.pages.diagnose.words import doubts_in_words, misfits, words
 def diagnosis_quality(diagnosis: Diagnosis) -> Quality:
     """Errors on the logs held out against what their sensors leave, and a flag for a gap, for what cannot be told, for the firmware."""
     flags = [_verdict(diagnosis)]
-    if differs(diagnosis.firmware):
-        flags.append(flag("the firmware does not do as its table says", Colour.RED))
+    if amiss(diagnosis.firmware):
+        flags.append(flag(amiss(diagnosis.firmware), Colour.RED))
     if doubts_in_words(diagnosis.note_records):
         flags.append(flag("columns that may be others than they are called"))
     looks = [MISFIT.look(f"{name} on the logs held out", misfit) for name, misfit in misfits(diagnosis).items()]

@@ -16,7 +16,7 @@ from twinlaw.pages.diagnose.retune import Moved, retuned_sentence
 from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
 from twinlaw.pages.diagnose.verdict import verdict_sentence
 from twinlaw.pages.diagnose.why import why_section
-from twinlaw.pages.diagnose.words import alarm_in_words, plain_notes, plain_text, words
+from twinlaw.pages.diagnose.words import alarm_in_words, as_sentence, plain_notes, plain_text, words
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.quality import quality_section, quality_sentence
 
@@ -118,4 +118,4 @@ def _unseen(diagnosis: Diagnosis) -> Section | None:
 def _notes(diagnosis: Diagnosis) -> Section | None:
     notes = beside_firmware(diagnosis.firmware, diagnosis.note_records)
     others = plain_notes([note for note in notes if note.kind not in (UNSEEN, HIDDEN)])
-    return Section("Notes", others) if others else None
+    return Section("Notes", [as_sentence(note) for note in others]) if others else None
