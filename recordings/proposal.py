@@ -29,6 +29,7 @@ SYNONYMS = (
     frozenset(("q", "position", "pos", "rate")),
     frozenset(("tau", "torque")),
 )
+SYNONYM = 0.9  # likeness of two words of one group: a setpoint is as much a reference as a ref is
 LEAST = 0.35  # likeness below which nothing is proposed: by then names share a letter or two
 
 
@@ -113,7 +114,7 @@ def likeness(column: str, name: str, signal: Signal) -> float:
     if not own or not other:
         return 0.0
     score = sum(max(_same(word, another) for another in other) for word in own) / max(len(own), 1)
-    reference = ("ref" in own) == any(_same("ref", word) == 1.0 for word in other)
+    reference = ("ref" in own) == any(_same("ref", word) >= SYNONYM for word in other)
     return score * (1.0 if fits else 0.9) * (1.0 if reference else 0.3)
 
 
@@ -123,7 +124,7 @@ def _same(word: str, other: str) -> float:
         return 1.0
     groups = [group for group in SYNONYMS if word in group]
     if any(other in group for group in groups):
-        return 0.9
+        return SYNONYM
     alike = (SequenceMatcher(None, one, other).ratio() for group in (*groups, {word}) for one in group if len(one) > 3)
     return max((0.8 * ratio for ratio in alike if ratio > 0.75), default=0.0)  # azimut, elevtn
 

@@ -153,6 +153,15 @@ def test_a_signal_of_the_name_in_another_quantity_is_proposed_with_a_factor_to_b
         log_of_contents(Contents(signals), "rig.csv", ColumnMapping(), columns_of("ce150"))
 
 
+def test_a_setpoint_is_not_proposed_as_the_measured_angle() -> None:
+    """Truth: two signals bear the axis' word each, the reference first."""
+    names = ("Main motor", "Tail motor", "Elevation setpoint", "Elevation", "Azimuth target", "Azimuth")
+    signals = {"t_s": Signal(T_S), **{name: Signal(np.sin(T_S), clock="t_s") for name in names}}
+    with pytest.raises(BadInput) as refused:
+        log_of_contents(Contents(signals), "rig.csv", ColumnMapping(), CE150)
+    assert refused.value.remedy.endswith("--column psi_rad=Elevation --column phi_rad=Azimuth")
+
+
 def test_columns_without_names_are_proposed_in_the_order_of_a_run_log_references_behind_them() -> None:
     """Truth: seven columns, as `run` writes them without its header, and as NumPy saves them in one array."""
     table = np.column_stack([0.01 * np.arange(50), *np.random.default_rng(1).normal(size=(6, 50))])

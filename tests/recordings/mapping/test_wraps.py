@@ -47,6 +47,14 @@ def test_an_angle_within_one_range_is_counted_on_about_zero(size: float, amplitu
     np.testing.assert_allclose(counted, truth, atol=1e-9 * size)
 
 
+def test_an_angle_that_begins_below_zero_is_counted_on_in_the_branch_about_zero() -> None:
+    # Truth: from -20 deg up to 10 deg and back; within a turn it begins at 340 deg.
+    truth = -5.0 - 15.0 * np.cos(0.02 * np.arange(900))
+    counted, leaps, _ = angle_past_its_end(truth % 360.0, [360.0])
+    assert leaps > 0
+    np.testing.assert_allclose(counted, truth, atol=1e-9)
+
+
 def test_an_angle_that_is_lost_and_one_of_several_turns_stay() -> None:
     several = np.linspace(0.0, 900.0, 90)
     several[50] -= 360.0
