@@ -44,7 +44,7 @@ def grid_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
 def _is_another(steps: float) -> bool:
     """Whether a grid of so many of the sensor's steps is another one: a few whole steps may be all that a short log shows."""
     whole = 0.99 < steps - round(steps) + 1.0 < 1.01
-    return abs(steps - 1.0) > 0.01 and (steps > thresholds.COARSER or not whole)
+    return steps > thresholds.COARSER or not whole
 
 
 def _remedy(steps: float) -> str:

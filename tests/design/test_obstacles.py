@@ -98,6 +98,7 @@ def test_the_plant_s_own_poles_are_told_and_what_is_gone_in_a_sample_is_called_s
     assert "at 0, -63, -2.76e+03 or faster rad/s, its zeros at" in told
     told = advice(of([[0, 1], [-25, -2]], [0, 1], [1, 0]), integrates=True)
     assert "at -1 +- 4.9j rad/s" in told
+    assert "zeros" not in told  # the hold makes one near z = -1, which is none of the plant's
 
 
 def test_a_zero_is_told_too_as_a_faster_loop_wants_a_pole_near_it() -> None:

@@ -9,7 +9,7 @@ from logcheck.breaks import break_findings, gaps, unbroken
 from logcheck.zeros import zero_findings
 from records.errors import BadInput
 from records.log import RunLog
-from tests.logcheck.test_parts import STEP_RAD, log_of
+from tests.logcheck.test_parts import STEP_RAD, log_of, rounded
 from tests.replay.firmware_flights import rows_of
 
 
@@ -70,3 +70,15 @@ def test_readings_of_zero_now_and_then_are_left_out_and_those_of_an_axis_that_pa
     assert found.excluded[failed & far].all()
     assert not found.excluded[~failed & ~honest].any()
     assert list(zero_findings(log, "a", "psi_rad", STEP_RAD)) == []
+
+
+def test_an_axis_that_often_rests_beside_zero_keeps_its_zeros_where_a_few_readings_are_lost() -> None:
+    # Truth: an axis hunts by one count about zero, 0 in every second row, and two of its readings on a step of 0.5 rad were lost.
+    log = log_of()
+    y = log.y.copy()
+    y[:, 0] = STEP_RAD * (np.arange(len(log.t_s)) % 2)
+    y[1000:1200, 0] += rounded(0.5 * np.sin(np.pi * np.arange(200) / 200.0))
+    y[[1080, 1120], 0] = 0.0
+    (found,) = zero_findings(replace(log, y=y), "a", "psi_rad", STEP_RAD)
+    assert found.excluded is not None
+    assert np.flatnonzero(found.excluded).tolist() == [1080, 1120]

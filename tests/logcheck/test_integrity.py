@@ -264,6 +264,11 @@ def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
     jittered = _examined(replace(log, t_s=log.t_s + late_s))
     assert _kinds(jittered) == {"jitter"}
     assert jittered.logs[0].timing.jitter_rms_s == pytest.approx(1e-3 * np.sqrt(1.0 / 6.0), rel=0.05)
+    # Truth: rows 10 ms apart on average, each late by its own 2 ms rms: 2000 of these move the mean by 4500 ppm rms, and not the clock.
+    steps_s = 0.01 + np.random.default_rng(5).uniform(-1.0, 1.0, 2000) * 2e-3 * np.sqrt(3.0)
+    waiting = _examined(replace(log, t_s=np.concatenate([[0.0], np.cumsum(steps_s)])))
+    assert abs(waiting.logs[0].timing.period_error_ppm) > 500.0
+    assert "sample_period" not in _kinds(waiting)
 
 
 def test_missing_numbers_glitches_and_rows_beyond_the_stops_are_found_where_they_are() -> None:
