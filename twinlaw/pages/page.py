@@ -45,6 +45,13 @@ class Page:
     sections: Sequence[Section]
 
 
+def as_sentence(note: str) -> str:
+    """A note as a sentence of its own on a page: its first word with a capital letter, unless that is a name, and a full stop."""
+    first = note.partition(" ")[0]
+    begun = note[:1].upper() + note[1:] if first.isalpha() and first.islower() else note
+    return begun if begun.endswith((".", "?", "!")) else f"{begun}."
+
+
 def with_units(cell: str) -> str:
     """A cell in which no line ends between a number and what follows it."""
     return re.sub(r"(?<=\d) (?=[A-Za-z%])", "\u00a0", cell)

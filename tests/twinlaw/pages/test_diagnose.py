@@ -32,7 +32,7 @@ from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
 from twinlaw.pages.diagnose.summary import summary_text
 from twinlaw.pages.diagnose.verdict import verdict_sentence
 from twinlaw.pages.diagnose.why import why_text
-from twinlaw.pages.diagnose.words import as_sentence, class_in_words, plain_notes
+from twinlaw.pages.diagnose.words import class_in_words, plain_notes
 from twinlaw.pages.page import page_text
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -464,16 +464,3 @@ def test_a_gap_that_nothing_explains_keeps_its_chance_and_is_not_called_as_small
         assert "as small as on a rig" not in text
         assert "brings predictions over a second hardly closer" in text
         assert "below 1e-06" in text
-
-
-@pytest.mark.parametrize(
-    ("note", "sentence"),
-    [
-        ("a shift of one row cannot be seen", "A shift of one row cannot be seen."),
-        ("psi_rad is NaN in 3 rows; not measured", "psi_rad is NaN in 3 rows; not measured."),
-        ("log.csv: lost one.", "log.csv: lost one."),
-        ("J_E moved by 2 sd", "J_E moved by 2 sd."),
-    ],
-)
-def test_a_note_stands_on_the_page_as_a_sentence_and_names_keep_their_letters(note: str, sentence: str) -> None:
-    assert as_sentence(note) == sentence

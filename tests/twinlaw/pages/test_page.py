@@ -1,7 +1,9 @@
 """What a page does to its text before a browser breaks it into lines."""
 
+import pytest
+
 from records.quality import Colour
-from twinlaw.pages.page import Page, Section, Table, page_text
+from twinlaw.pages.page import Page, Section, Table, as_sentence, page_text
 
 
 def test_a_line_ends_neither_before_a_per_cent_sign_nor_within_an_option() -> None:
@@ -20,3 +22,16 @@ def test_a_short_cell_is_one_line_whatever_stands_in_it() -> None:
     assert "<td>a sentence" in page
     assert "<td>0.06\u00a0dB, 0.7\u00a0deg, 5\u00a0%</td>" in page
     assert '<td class="good whole">green</td>' in page
+
+
+@pytest.mark.parametrize(
+    ("note", "sentence"),
+    [
+        ("a shift of one row cannot be seen", "A shift of one row cannot be seen."),
+        ("psi_rad is NaN in 3 rows; not measured", "psi_rad is NaN in 3 rows; not measured."),
+        ("log.csv: lost one.", "log.csv: lost one."),
+        ("J_E moved by 2 sd", "J_E moved by 2 sd."),
+    ],
+)
+def test_a_note_stands_on_the_page_as_a_sentence_and_names_keep_their_letters(note: str, sentence: str) -> None:
+    assert as_sentence(note) == sentence

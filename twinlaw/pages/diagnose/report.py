@@ -16,8 +16,8 @@ from twinlaw.pages.diagnose.retune import Moved, retuned_sentence
 from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
 from twinlaw.pages.diagnose.verdict import verdict_sentence
 from twinlaw.pages.diagnose.why import why_section
-from twinlaw.pages.diagnose.words import alarm_in_words, as_sentence, plain_notes, plain_text, words
-from twinlaw.pages.page import Page, Section, Table
+from twinlaw.pages.diagnose.words import alarm_in_words, plain_notes, plain_text, words
+from twinlaw.pages.page import Page, Section, Table, as_sentence
 from twinlaw.pages.quality import quality_section, quality_sentence
 
 UNSEEN, HIDDEN = "unseen", "hidden"  # kinds of notes

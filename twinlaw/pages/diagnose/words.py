@@ -91,13 +91,6 @@ def plain_notes(notes: Sequence[Note]) -> list[str]:
     return list(dict.fromkeys(plain_sentence(note) for note in notes if note.kind not in DOUBTS))
 
 
-def as_sentence(note: str) -> str:
-    """A note as a sentence of its own on a page: its first word with a capital letter, unless that is a name, and a full stop."""
-    first = note.partition(" ")[0]
-    begun = note[:1].upper() + note[1:] if first.isalpha() and first.islower() else note
-    return begun if begun.endswith((".", "?", "!")) else f"{begun}."
-
-
 def doubts_in_words(notes: Sequence[Note]) -> str:
     """What is to be read before the verdict: columns that may be others than they are called."""
     return "; ".join(plain_sentence(note) for note in notes if note.kind in DOUBTS)

@@ -20,7 +20,7 @@ from twinlaw.pages.identify.frequency_tables import (
     pair_rows,
 )
 from twinlaw.pages.identify.summary import SCALE, estimate_heading, estimate_rows, remarked
-from twinlaw.pages.page import Page, Section, Table
+from twinlaw.pages.page import Page, Section, Table, as_sentence
 from twinlaw.pages.quality import quality_section, quality_sentence
 
 
@@ -57,7 +57,9 @@ def _parameters(found: FrequencyIdentification, truth: Truth | None) -> Section:
     estimates = found.result.estimates
     rows = estimate_rows(estimates, found.fit.at_bound, known)
     return Section(
-        "Parameters", (*(found.notes or ("Nothing to remark.",)), SCALE), (Table(rows, estimate_heading(known)),)
+        "Parameters",
+        (*map(as_sentence, found.notes or ("Nothing to remark.",)), SCALE),
+        (Table(rows, estimate_heading(known)),),
     )
 
 

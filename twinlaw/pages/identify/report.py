@@ -26,7 +26,7 @@ from twinlaw.pages.identify.summary import (
     remarked,
 )
 from twinlaw.pages.measured import measured
-from twinlaw.pages.page import Page, Section, Table
+from twinlaw.pages.page import Page, Section, Table, as_sentence
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
 from twinlaw.pages.quality import quality_section, quality_sentence
 
@@ -69,7 +69,7 @@ def _estimates(result: Identification, truth: Mapping[str, float] | None) -> Sec
     tables = [Table(estimate_rows(result.estimates, result.at_bound, truth), estimate_heading(truth))]
     if result.aids:
         tables.append(Table(aid_rows(result.aids), AID_HEADING))
-    return Section("Parameters", (*(result.notes or ("Nothing to remark.",)), SCALE), tuple(tables))
+    return Section("Parameters", (*map(as_sentence, result.notes or ("Nothing to remark.",)), SCALE), tuple(tables))
 
 
 def _correlation(result: Identification) -> list[Section]:
@@ -86,7 +86,7 @@ def _correlation(result: Identification) -> list[Section]:
 def _fits(result: Identification) -> list[Section]:
     """Every channel that has readings enough to be judged."""
     sentence = (
-        "rms of what is left, beside what the sensor's rounding and noise alone leave; fit = 1 - |y - prediction| / |y - mean|. "
+        "The rms of what is left, beside what the sensor's rounding and noise alone leave; fit = 1 - |y - prediction| / |y - mean|. "
         "Readings that are more correlated than their rounding explains count for fewer samples in the intervals."
     )
     rows = [*fit_rows(result.stages), *held_out_rows(result.holdout)]

@@ -127,7 +127,7 @@ def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
     for name in names:
         if name not in known:
             raise BadInput(
-                f"parameter {name!r}", "--free", "an unknown or exact one", f"of {', '.join(known)}", "correct it"
+                f"parameter {name!r}", "--free", "an unknown or exact one", f"one of {', '.join(known)}", "correct it"
             )
     return names
 

@@ -130,7 +130,9 @@ def read_limits(path: Path | None, known: Sequence[str]) -> Limits:
     found = {}
     for name, pair in read_toml(path, "bounds").items():
         if name not in known:
-            raise BadInput(f"bounds of {name!r}", str(path), "an unknown name", f"of {', '.join(known)}", "correct it")
+            raise BadInput(
+                f"bounds of {name!r}", str(path), "an unknown name", f"one of {', '.join(known)}", "correct it"
+            )
         lowest, highest = checks.numbers(pair, f"{path}: {name}", 2)
         if lowest >= highest:
             raise BadInput(
@@ -154,6 +156,8 @@ def free_names(bound: BoundPlant, wanted: str | None) -> tuple[str, ...]:
             if entry == name or (entry.rpartition("_")[0] == name and entry[len(name) + 1 :].isdigit())
         ]
         if not own:
-            raise BadInput(f"parameter {name!r}", "--free", "an unknown name", f"of {', '.join(known)}", "correct it")
+            raise BadInput(
+                f"parameter {name!r}", "--free", "an unknown name", f"one of {', '.join(known)}", "correct it"
+            )
         found += own
     return tuple(found)
