@@ -7,9 +7,11 @@ import pytest
 
 from logcheck.between import duplicate_findings
 from logcheck.integrity import demand, examine
+from logcheck.motion import wrap_findings
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant, bind
+from tests.logcheck.test_parts import STEPS, log_of
 from tests.own_plants import WORKING
 from twinlaw import fly, load
 
@@ -97,3 +99,14 @@ def test_a_sensor_of_a_coarse_grid_beside_a_smooth_input_is_no_exchange(arm: Bou
     angle = 0.16 * np.sin(0.6 * t_s)[:, None]
     coarse = replace(log, u=2.0 + np.sin(1.7 * t_s)[:, None], y=0.06 * np.round(angle / 0.06))
     demand(examine([coarse], arm, names=["log"]))
+
+
+def test_an_angle_that_leaps_by_other_than_turns_too_was_not_kept_within_one() -> None:
+    # Truth: 0 to 9 rad, written within a turn; and the same with a reading that goes on 2 rad away from the middle on.
+    log = log_of()
+    truth = 9.0 * np.linspace(0.0, 1.0, len(log.t_s))
+    for leap_rad, kinds in ((0.0, ["wrapped"]), (2.0, [])):
+        y = log.y.copy()
+        y[:, 0] = (truth + leap_rad * (log.t_s > 5.0)) % (2.0 * np.pi)
+        found = wrap_findings(replace(log, y=y), "a", STEPS, ("psi_rad",))
+        assert [entry.finding.kind for entry in found] == kinds

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from logcheck.integrity import examine
+from logcheck.standing import end_findings, off_findings
 from records.log import RunLog
 from sim.bind import BoundPlant
+from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
 from tests.own_plants import WORKING
 from twinlaw import fly, load
 
@@ -48,3 +50,40 @@ def test_a_rig_that_was_switched_off_is_left_out_from_there(arm: BoundPlant) -> 
     u, y = log.u.copy(), log.y.copy()
     u[far:], y[far:] = 0.0, 0.0
     assert kinds(arm, replace(log, u=u, y=y))["switched_off"] == pytest.approx(log.t_s[far])
+
+
+def test_an_axis_that_stands_at_an_end_of_its_range_may_be_stopped_and_what_no_mass_moves_may_not() -> None:
+    """Truth: from its largest reading on psi stands, though the inputs go on as before."""
+    log = log_of()
+    y, top = log.y.copy(), int(np.argmax(log.y[:1600, 0]))
+    y[top:, 0] = y[top, 0]
+    stands, begins = replace(log, y=y), np.zeros(len(log.t_s), bool)
+    assert [found.finding.kind for found in end_findings(stands, "a", STEPS, begins)] == ["dead_end"]
+    assert list(end_findings(stands, "a", STEPS, begins, ("psi_rad",))) == []
+
+
+@pytest.mark.parametrize(("rows", "told"), [(100, False), (400, True)])
+def test_an_output_that_answers_late_is_given_three_times_as_long(rows: int, told: bool) -> None:
+    """Truth: psi follows its input 60 rows later, all along; it has not answered the last of its switches."""
+    k = np.arange(1800 + rows)
+    u_V = 2.0 * ((np.minimum(k, 1800) // 200) % 2)
+    psi = 0.1 * np.where(k < 60, 0.0, u_V[np.maximum(k - 60, 0)])
+    psi[1800:] = psi[1799]
+    log = log_of(len(k))
+    late = replace(log, u=np.column_stack([u_V, u_V]), y=np.column_stack([psi, log.y[:, 1]]))
+    found = [entry.finding.column for entry in end_findings(late, "a", STEPS, np.zeros(len(k), bool))]
+    assert ("psi_rad" in found) == told
+
+
+def test_a_log_that_ends_at_rest_behind_a_move_that_its_axis_often_makes_was_not_switched_off() -> None:
+    """Truth: an axis that moves by up to 13 steps a row comes to rest by single steps and a last one of 10; then nothing changes."""
+    log = log_of()
+    u, y = log.u.copy(), log.y.copy()
+    y[:, 0] = rounded(0.5 * np.sin(4.0 * log.t_s))
+    y[1900:1990, 0] = y[1899, 0] + STEP_RAD * np.arange(1, 91)
+    y[1990:, 0] = y[1989, 0] + 10 * STEP_RAD
+    y[1990:, 1], u[1990:] = y[1989, 1], u[1989]
+    rest = replace(log, u=u, y=y)
+    assert list(off_findings(rest, "a", PLANT, STEPS)) == []
+    y[1990:, 0] = y[1989, 0] + 60 * STEP_RAD
+    assert [found.finding.kind for found in off_findings(replace(rest, y=y), "a", PLANT, STEPS)] == ["switched_off"]
