@@ -143,3 +143,10 @@ def test_a_heading_with_a_stroke_is_no_path(tmp_path: Path) -> None:
     columns = {"u_M_V": "x", "u_T_V": "x", "psi_rad": "x", "phi_rad": "x"}
     log = imported_here(tmp_path / "run.csv", ColumnMapping(columns=columns)).log
     np.testing.assert_allclose(log.t_s - log.t_s[0], np.arange(50) * 0.02, atol=1e-6)
+
+
+def test_seconds_as_large_as_days_since_1900_stay_seconds_by_their_steps(tmp_path: Path) -> None:
+    # Truth: a clock that stands at 45000 s, half a day, when the log begins, and goes on by 10 ms a row, which as days are 864 s.
+    done = imported_here(save_run(tmp_path / "run.mat", t_s=None, t=45000.0 + T_S), ColumnMapping())
+    np.testing.assert_allclose(np.diff(done.log.t_s), np.diff(T_S), atol=1e-9)
+    assert not any("days" in told for told in done.found)
