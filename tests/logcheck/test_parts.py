@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from logcheck.between import duplicate_findings, plant_pair_findings, shared_rows
+from logcheck.between import duplicate_findings, holding_ratio, plant_pair_findings, shared_rows
 from logcheck.dead import amount, dead_findings, read_again
 from logcheck.facts import plant_facts
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Found, in_words
@@ -224,6 +224,16 @@ def test_rows_that_stand_in_two_logs_and_rigs_that_differ_are_seen_between_them(
     ((_, twice),) = duplicate_findings([one], ["a"], [other], ["b"])
     assert twice.finding.severity == REFUSE  # of rows to fit and rows to check on
     assert list(plant_pair_findings([one, one], ["a", "b"])) == []
+
+
+def test_logs_that_rest_at_one_angle_by_other_inputs_are_told_and_a_turned_sign_is_no_ratio() -> None:
+    # Truth: an axis that creeps by 5 mrad a second while 6 V and more hold it, and a second log of twice that input, or of the other sign.
+    log = log_of(4000)
+    one = replace(log, y=rounded(np.column_stack([0.005 * log.t_s, log.y[:, 1]])))
+    assert holding_ratio(one, replace(one, u=2.0 * one.u)) == pytest.approx(2.0)
+    ((_, told),) = plant_pair_findings([one, replace(one, u=2.0 * one.u)], ["a", "b"])
+    assert "u_M_V that holds the same psi_rad is 2 times that of a" in told.finding.sentence
+    assert holding_ratio(one, replace(one, u=-one.u)) is None
 
 
 @pytest.mark.parametrize(("scale", "unit"), [(np.degrees(1.0), "degrees"), (1.0 / STEP_RAD, "encoder counts")])
