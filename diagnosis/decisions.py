@@ -310,6 +310,12 @@ ANOTHER_PLANT = Limit(
     "logs of other rigs",
 )
 MOVES_FLOORS = Limit(5.0, "floors", "windows in which an output moves less do not count")
+PROMISED_SHARE = Limit(
+    0.25,
+    "share of the nats that are needed",
+    "that axes which yield, or columns moved by rows, must promise with all noise as it was, to be fitted: time",
+    "eleven moves and eight axes in spent sealed cases and own flights: fits gained 2.8 times what was promised at most",
+)
 COLUMNS_ROWS = Count(
     4000,
     "rows",

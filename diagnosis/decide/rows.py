@@ -37,8 +37,6 @@ from records.reasons import Note
 LATE, EARLY = 1, -1
 NUMBERS = {1: "one row", 2: "two rows", 3: "three rows"}
 OTHER_ROWS = ("columns_late", "columns_early")  # kinds of notes
-# Of what is told, that a move must promise to be fitted: fits of eight moves in spent sealed cases gained a third less to a third more.
-FITTED_FROM = 0.5
 Array = NDArray[np.float64]
 
 
@@ -80,7 +78,7 @@ def demand_rows(
     Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own,
     and by more than COLUMNS_REFUSED better; but where an effect promises more than that, the logs are those of a rig that has it.
     `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are. `beaten` are the nats by which
-    another reading of the inputs between rows is likelier than this one, which a move must gain besides; it is told of nothing else.
+    another reading of the inputs between rows is likelier than this one: a move must be likelier than that too; nothing else is told then.
     """
     short = looked_at(case)
     plain = settled_or_none(short, nominal.hypothesis)
@@ -88,14 +86,13 @@ def demand_rows(
         return ()
     usual = with_usual_forces(short, plain)
     found, commands = misplaced(Asked(short, usual))
-    found = None if found is None else replace(found, gain=found.gain - beaten)
-    if beaten and (found is None or not is_told(found.gain)):
+    if beaten and (found is None or found.gain < beaten + decisions.TAKEN_IN):
         return ()
     if found is None:
         return _unseen(commands)
-    if not (found.follows and found.slip.way in ways and is_refused(found.gain)):
+    if not (found.follows and found.slip.way in ways and is_refused(found.gain - beaten)):
         return (_note(case, found),)
-    if most_by_an_effect(short, _from_the_moved(short, usual, found)) > found.gain:
+    if most_by_an_effect(short, _from_the_moved(short, usual, found)) > found.gain - beaten:
         return ()
     remedy = ", or ".join(_move(case, slip) for slip in (found.slip, *found.alike))
     if found.slip.way == EARLY:
@@ -179,7 +176,7 @@ def misplaced(asked: Asked) -> tuple[Moved | None, tuple[float, ...]]:
     slips = (*asked.commands, *_one_column(len(model.inputs), len(model.outputs)))
     promised = dict(zip(slips, thread_map(asked.promised, slips), strict=True))
     commands = tuple(promised[slip] for slip in asked.commands)
-    least = FITTED_FROM * decisions.COLUMNS_TOLD
+    least = decisions.PROMISED_SHARE * decisions.COLUMNS_TOLD
     likelier = sorted((slip for slip in slips if promised[slip] > least), key=lambda slip: -promised[slip])
     ones = thread_map(asked.moved, likelier[: decisions.ASKED])
     for one in sorted(ones, key=lambda one: (-one.follows, -one.gain)):

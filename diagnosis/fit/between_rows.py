@@ -36,7 +36,7 @@ def between_rows(case: Case, held: Fit) -> tuple[tuple[float, ...], Fit, tuple[D
     found = settled(with_commands(case, commands), held.hypothesis)
     gain = gain_over(case, held, found)
     better = gain > decisions.TAKEN_IN
-    told = " and ".join(f"{count:g}" for count in commands)
+    told = " and ".join("ever new" if np.isinf(count) else f"{count:g}" for count in commands)
     rule = decided("between_rows", "inputs", gain, decisions.TAKEN_IN, f"{told} commands a row" if better else "held")
     return (commands, found, (rule,)) if better else (none, held, (rule,))
 

@@ -20,9 +20,6 @@ from records.reasons import Decision
 from sim.effect import Effect, Values
 
 FOLD = 2.0  # from one size that is tried to the next
-# Of what is needed, that a way must promise with all else as it was to be fitted: in eight spent sealed cases fits added a quarter at most,
-# on a rig whose file states another drag as much again.
-PROMISED_SHARE = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +45,7 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
     promising = sorted(
         (fitted.evidence + gain, place)
         for place, (gain, fitted) in enumerate(promised)
-        if gain > PROMISED_SHARE * (best - fitted.evidence)
+        if gain > decisions.PROMISED_SHARE * (best - fitted.evidence)
     )
     yields = dict[str, Values]()
     for _, place in promising[: -decisions.NEXT - 1 : -1]:

@@ -76,6 +76,19 @@ def test_a_column_of_which_a_short_log_tells_little_is_told_and_not_refused(libr
     assert told(library, logged(fly(31, seconds=SECONDS - 1.0), Misplaced((0,), 1))) == ["columns_late"]
 
 
+def test_commands_that_another_reading_of_the_rows_follows_half_as_well_are_told(
+    library: EffectLibrary, fly: Fly
+) -> None:
+    # Truth: u_M_V stands one row late. Inputs that go straight from row to row are half a row early, and so half as good; what is 10 nats
+    # likelier than that is told, what is not is left to it.
+    case = make_case(library, [logged(fly(31, seconds=SECONDS - 1.0), Misplaced((0,), 1))])
+    nominal = plain_fit(case)
+    (note,) = demand_rows(case, nominal, "the logs to explain")
+    gain = note.numbers["gain_nats"]
+    assert [note.kind for note in demand_rows(case, nominal, "the logs", beaten=0.5 * gain)] == ["columns_late"]
+    assert demand_rows(case, nominal, "the logs", beaten=gain - 5.0) == ()
+
+
 def test_commands_in_their_rows_are_not_doubted(library: EffectLibrary, fly: Fly) -> None:
     assert told(library, fly(31, seconds=SECONDS)) == []
 
