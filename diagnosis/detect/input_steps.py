@@ -12,6 +12,7 @@ from diagnosis.detect.linearisation import Linearisation
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances
 from jobs.thread_map import thread_map
+from sim.model import Model
 from sim.paths.path import counts_held
 
 Array = NDArray[np.float64]
@@ -126,15 +127,26 @@ def _durations_s(filter_input: FilterInput) -> Array:
 
 
 def _target(linearisation: Linearisation, variable: sympy.Symbol) -> int | None:
-    """The state that an input drives: its rotor's speed, or the speed of the axis that it pushes."""
+    """The state by which an input shows: its rotor's speed, the speed of the axis that it pushes, or of the first that it moves through
+    others, as through a current, which forgets an error before the next row; where it moves no axis, the state that it drives."""
     library = linearisation.case.library
-    for rotor in library.bound.model.places.rotors.values():
+    model = library.bound.model
+    for rotor in model.places.rotors.values():
         if rotor.variable != variable:
             continue
         if rotor.drive is not None:
             return library.states.index(str(rotor.speed))
         axis = next(iter(rotor.thrusts))
-        return library.states.index(
-            next(str(entry.velocity) for entry in library.bound.model.axes if entry.name == axis)
-        )
-    return None
+        return library.states.index(next(str(entry.velocity) for entry in model.axes if entry.name == axis))
+    moved = _moved_by(model, variable)
+    speeds = [state for state in moved if state in [entry.velocity for entry in model.axes]]
+    return next((library.states.index(str(state)) for state in (*speeds, *moved)), None)
+
+
+def _moved_by(model: Model, variable: sympy.Symbol) -> list[sympy.Symbol]:
+    """The states that an input moves, those first that it drives, then those that these drive, and so on."""
+    rates = dict(zip(model.states, model.state_rates(), strict=True))
+    moved: list[sympy.Symbol] = []
+    while further := [s for s in rates if s not in moved and rates[s].free_symbols & {variable, *moved}]:
+        moved += further
+    return moved

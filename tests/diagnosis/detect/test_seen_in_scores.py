@@ -13,8 +13,14 @@ from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
+from records.log import RunLog
+from records.plant import load_plant
+from sim.added_effects import with_effects
 from sim.bind import bind
+from sim.columns import log_columns
+from sim.simulate import simulate
 from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
+from tests.test_project import ROOT
 
 STEP_V = 0.2
 
@@ -24,6 +30,19 @@ def test_steps_of_an_input_are_found_near_their_size() -> None:
     case = arm_case(arm_log({"input.quantization": {"q": STEP_V}}))
     found = likely_steps(linearised(case, nominal_fit(case)), "input")
     assert min(abs(step / STEP_V - 1.0) for step, _ in found) < 0.01
+
+
+def test_steps_of_an_input_that_no_rotor_stands_behind_are_found() -> None:
+    # Truth: a motor, whose voltage moves a current and that the shaft, gets it rounded to 0.1 V; the current settles within 1 ms of a row.
+    motor = bind(load_plant(ROOT / "plants" / "dc_motor" / "plant.toml"))
+    t_s = np.arange(0.0, 40.0, 0.02)
+    rates, phases = np.random.default_rng(7).uniform((0.5, 0.0), (6.0, 6.3), (5, 2)).T
+    u = 0.5 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)[:, None]
+    rig = with_effects(motor, {"input.quantization": {"q": 0.1}})
+    run = simulate(rig, t_s, np.zeros(3), u, substeps=40, keep="y")
+    case = make_case(effect_library(motor), [RunLog(log_columns(motor.model), 0.02, "open", t_s, u, run.y)])
+    found = likely_steps(linearised(case, nominal_fit(case)), "input")
+    assert min(abs(step / 0.1 - 1.0) for step, _ in found) < 0.01
 
 
 @pytest.mark.parametrize(("shape", "kind"), [({"h": 0.15}, Kind(hold=0.12)), ({"s": 0.3}, Kind(shift=0.25))])
