@@ -103,7 +103,7 @@ def _noisy_of_a_size(
 ) -> list[FittedHypothesis]:
     """Hypotheses of one number of effects with their noise, the likeliest and what comes near it; `first` is the `best` of all with its
     own."""
-    own = max(group, key=lambda entry: entry.evidence)
+    own = best if best in group else max(group, key=lambda entry: entry.evidence)
     noisy = first if own is best else _own_noise(case, own, first)
     if noisy is None:
         return []

@@ -18,6 +18,7 @@ from diagnosis.search.beam import Search, beam_of, with_twins
 from diagnosis.search.draughts import hardly_told, with_noise_beside, with_noise_of
 from diagnosis.search.exchange import fit_twins, is_twin, twins_of
 from diagnosis.search.fitting import refined
+from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
 
 # Truth: the drive lags, and a torque of a seventieth of what the arm needs comes and goes within half a second.
@@ -91,6 +92,19 @@ def test_what_is_fitted_later_gets_the_noise_of_what_it_is_compared_with(late: C
     assert found.effects == sensor.effects
     assert found.evidence > sensor.evidence
     assert "arm.gust" in found.fit.hypothesis.effects
+
+
+def test_where_noise_is_more_than_noise_beside_the_likeliest_the_next_of_its_size_leads(late: Case) -> None:
+    # Truth: a lag of the sensor is the likelier name, and under noise of its own predicts a second less well than a delay under its own.
+    # Where that is called too little, the delay leads those of one effect.
+    logs = FittedLogs(late)
+    lag = supposed(late, {"theta_sensor.lag": {"tau": 0.1}})
+    delay = supposed(late, {"theta_sensor.delay": {"tau": 0.1, "jitter": 0.0}})
+    assert lag.evidence > delay.evidence
+    gains = [logs.gain(with_noise_beside(late, [e])[0].fit.hypothesis, e.fit.hypothesis) for e in (lag, delay)]
+    assert gains[0] < gains[1]
+    with decisions.changed("MATTERS", -float(np.mean(gains)) / decisions.MATTERS):
+        assert delay.effects in [entry.effects for entry in with_noise_beside(late, [lag, delay])]
 
 
 def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> None:
