@@ -91,6 +91,10 @@ class Holdout:
         """The same of the plant that a hypothesis leaves for these logs, whatever it names: its parameters count too."""
         return score(self.errors_foreseen(hypothesis), self._errors(self.base.fit.hypothesis))
 
+    def score_of_longest(self, hypothesis: Hypothesis) -> Score:
+        """The same of predictions over the longest horizon alone."""
+        return score(self.errors_foreseen(hypothesis).of_longest(), self._errors(self.base.fit.hypothesis).of_longest())
+
     def _named(self, hypothesis: Hypothesis) -> list[str]:
         """The effects of a hypothesis that `base` lacks, noise apart."""
         return [
@@ -192,16 +196,26 @@ def favour(told: Score) -> float:
 def added(
     holdout: Holdout, first: FittedHypothesis, probability: float
 ) -> tuple[FittedHypothesis, tuple[Note, ...], tuple[Decision, ...]]:
-    """What is to be added: what has more than half of all `probability` unless the hold-out is predicted worse by it, what has less only
-    where that is predicted better; else the plant without it, as is told then."""
+    """What is to be added: what has more than half of all `probability` unless the hold-out is predicted worse by it, over all horizons or
+    surely over the longest, for which a model is used; what has less only where it is predicted better besides; else the plant without
+    it, as is told then."""
     told, of = holdout.score_of_plant(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
+    longest = holdout.score_of_longest(first.fit.hypothesis)
     likely = probability > decisions.LIKELIER_THAN_NOT
     least = -float(decisions.MATTERS) if likely else float(decisions.MATTERS)
-    short = told.gain < least
-    rule = held_against("added", of, told.gain, least, NATS, "nothing added" if short else "added")
-    if not short:
-        return first, (), (rule,)
-    gain_nats = told.gain / _outputs(holdout.case)
+    lowest = -max(float(decisions.MATTERS), decisions.SURELY * longest.sd)
+    rules = (
+        held_against("added", of, told.gain, least, NATS, "nothing added" if told.gain < least else "added"),
+        held_against("added_for_long", of, longest.gain, lowest, NATS, _no_worse(longest.gain >= lowest)),
+    )
+    if told.gain >= least and longest.gain >= lowest:
+        return first, (), rules
+    worst = min(told.gain, longest.gain if longest.gain < lowest else told.gain)
+    gain_nats = worst / _outputs(holdout.case)
     unsure = Note("unsure", of, {"probability": probability, "gain_nats": gain_nats})
-    worse = told.gain < -decisions.MATTERS
-    return holdout.base, (Note("predicts_worse", of, {"worse_nats": -gain_nats}) if worse else unsure,), (rule,)
+    worse = worst < -decisions.MATTERS
+    return holdout.base, (Note("predicts_worse", of, {"worse_nats": -gain_nats}) if worse else unsure,), rules
+
+
+def _no_worse(holds: bool) -> str:
+    return "no worse over the longest horizon" if holds else "nothing added"

@@ -55,6 +55,10 @@ class Errors:
         """Those of one output alone."""
         return Errors(self.squares[..., [output]], self.grid[[output]], self.attainable[..., [output]])
 
+    def of_longest(self) -> "Errors":
+        """Those of the longest horizon alone, whatever grid readings lie on."""
+        return Errors(self.squares[:, -1:], np.zeros_like(self.grid), self.attainable[:, -1:])
+
 
 def errors_of(case: Case, hypothesis: Hypothesis, read: Callable[[Hypothesis], Sequence[Array]]) -> Errors:
     """The errors of a model over all windows of the logs of `case`; `read` are its predictions (rows, outputs) of each."""

@@ -21,7 +21,7 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.result import Judged, Result, Seen
 from diagnosis.standing import of_consequence
 from diagnosis.validate.fitted_logs import readings_of
-from diagnosis.validate.score import Score
+from diagnosis.validate.score import HORIZONS_S, Errors, Score
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
@@ -155,6 +155,32 @@ def test_what_is_unlikely_is_added_only_where_the_hold_out_is_better_for_it() ->
         ["unsure"],
         "nothing added",
     )
+
+
+@pytest.mark.parametrize(("last", "stays"), [(4.0, False), (1.0, True)])
+def test_what_predicts_a_second_surely_worse_is_not_added_however_well_it_predicts_a_row(
+    last: float, stays: bool
+) -> None:
+    # Truth by hand: errors a hundredth as large over all horizons but the longest, and there twice as large, or the same, in 20 windows.
+    _, holdout = judged(arm_log(seed=36))
+    hypothesis = (hardly := supposing({"arm.coulomb": {"b": 1e-9}})).fit.hypothesis
+    before = np.ones((20, len(HORIZONS_S), 1))
+    after = 1e-4 * before
+    after[:, -1] = last
+    nothing = np.zeros_like(before)
+    holdout.ways.update({hypothesis: hypothesis})
+    holdout.judged.update(
+        {
+            hypothesis: Errors(after, np.zeros(1), nothing),
+            holdout.base.fit.hypothesis: Errors(before, np.zeros(1), nothing),
+        }
+    )
+    assert holdout.score_of_plant(hypothesis).gain > 3.0
+    assert holdout.score_of_longest(hypothesis).gain == pytest.approx(-0.5 * np.log(last))
+    chosen, notes, rules = added(holdout, hardly, 0.9)
+    assert (chosen is hardly) is stays
+    assert [note.kind for note in notes] == ([] if stays else ["predicts_worse"])
+    assert [rule.rule for rule in rules] == ["added", "added_for_long"]
 
 
 def test_what_leaves_most_of_the_hold_outs_error_is_told_to_be_a_part() -> None:
