@@ -13,6 +13,7 @@ from identification.frequency.pairs import Pair
 from identification.frequency.responses.conditioned import Responses
 from identification.results.result import Estimated
 from records.quality import MISFIT
+from records.text.uncertain import with_sd
 
 Array = NDArray[np.float64]
 POOR_J = 100.0
@@ -31,7 +32,7 @@ def notes_on(estimates: Sequence[Estimated], fit: FrequencyFit, pairs: Sequence[
     reasons: dict[str, list[str]] = {}
     for entry in estimates:
         if not entry.identified:
-            by_data = f"{entry.name} (by the data {entry.by_data:.2g}, sd {entry.by_data_sd:.2g} {entry.unit})"
+            by_data = f"{entry.name} (by the data {with_sd(entry.by_data, entry.by_data_sd)} {entry.unit})"
             reasons.setdefault(_reason(fit, entry.name), []).append(by_data)
     untold = [
         f"{', '.join(names)}: not told; {reason}; the plant file's value is kept" for reason, names in reasons.items()

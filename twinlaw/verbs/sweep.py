@@ -29,6 +29,7 @@ from records.log import RunLog, save_log
 from records.loops import LOOPS
 from records.plant import Plant, load_plant
 from records.table import ControllerTable
+from records.text.uncertain import to_sd
 from twinlaw.cli import console, options
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.designing import design_controller
@@ -198,9 +199,9 @@ def _coverage_rows(parameters: Mapping[str, Mapping[str, float]]) -> list[tuple[
         (
             name,
             f"{own['true']:.5g}",
-            f"{own['mean']:.5g}",
-            f"{own['scatter']:.2g}",
-            f"{own['stated']:.2g}",
+            to_sd(own["mean"], own["scatter"]),
+            to_sd(own["scatter"], own["scatter"]),
+            to_sd(own["stated"], own["stated"]),
             f"{own['inside']:.0%}",
         )
         for name, own in parameters.items()

@@ -11,6 +11,7 @@ from pathlib import Path
 from codegen.traceability.origin import Trace, names, trace
 from controllers.loading import load_scheduled
 from design.settings import read_settings
+from records.text.uncertain import to_sd
 from records.text.units import label, unit_of
 from twinlaw.cli import console, options
 from twinlaw.workflows.reading import load_bound
@@ -90,8 +91,8 @@ def _parameter_rows(found: Trace) -> list[tuple[str, ...]]:
     return [
         (
             entry.name,
-            f"{entry.value:.6g}",
-            f"{entry.sd:.2g}",
+            to_sd(entry.value, entry.sd),
+            to_sd(entry.sd, entry.sd),
             entry.unit,
             "is it" if entry.sensitivity is None else f"{entry.sensitivity:+.3g} % per %",
             entry.source,

@@ -125,7 +125,7 @@ def test_the_page_says_all_that_the_record_holds(whole_page: str) -> None:
     told = (
         "81 % of the gap",
         "93.0 %",
-        "k = 0.00312 ± 4e-05 N m/rad",
+        "k = 0.003120 ± 0.000040 N m/rad",
         "pulls the arm back",
         "cannot tell cable spring of the azimuth from tilt of the azimuth",
     )
@@ -293,11 +293,11 @@ def test_joint_effects_have_a_line_each_and_their_names_once() -> None:
     told = replace(WORDS, effects=(joint,), found=(), firmware=None)
     page = text_of(told).replace("\u00a0", " ")
     assert page.count("azimuth.flexible_mode") == 1
-    assert "<td>gain = 0.5 ± 0.1, zeta = 0.2 ± 0.1</td>" in page
-    assert "<td>b = 0.0001 ± 1e-05 N m</td>" in page
+    assert "<td>gain = 0.50 ± 0.10, zeta = 0.20 ± 0.10</td>" in page
+    assert "<td>b = 0.000100 ± 0.000010 N m</td>" in page
     lines = summary_text(told).splitlines()
-    assert "gain 0.5 ± 0.1, zeta 0.2 ± 0.1" in lines[1]
-    assert re.match(r"  with azimuth.coulomb +b 0.0001 ± 1e-05 N m$", lines[2])
+    assert "gain 0.50 ± 0.10, zeta 0.20 ± 0.10" in lines[1]
+    assert re.match(r"  with azimuth.coulomb +b 0.000100 ± 0.000010 N m$", lines[2])
 
 
 def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
@@ -308,8 +308,8 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
         {"d": Estimate(0.01, 0.001, "V"), "w": Estimate(6e-9, 60.0, "1"), "n": Estimate(19.0, 0.1, "rad rad^-1")},
     )
     told, widths = replace(WORDS, effects=(dead,)), {"tail_input.deadzone.w": 3.0, "tail_input.deadzone.d": 0.4}
-    assert "d = 0.01 ± 0.001 V, w not told by these data, n = 19 ± 0.1 per rad" in text_of(told, widths=widths)
-    assert "d 0.01 ± 0.001 V, w not told by these data, n 19 ± 0.1 per rad" in summary_text(told, (), widths)
+    assert "d = 0.0100 ± 0.0010 V, w not told by these data, n = 19.00 ± 0.10 per rad" in text_of(told, widths=widths)
+    assert "d 0.0100 ± 0.0010 V, w not told by these data, n 19.00 ± 0.10 per rad" in summary_text(told, (), widths)
 
 
 @pytest.mark.parametrize(
@@ -427,8 +427,8 @@ def test_an_answer_many_times_the_models_is_told_without_powers_of_ten() -> None
         for error, sd, coherence in ((12.14, 2.1, 0.97), (0.04541, 0.0052, 0.9))
     )
     told = summary_text(replace(WORDS, error_responses=rows))
-    assert "psi to u_M from 1 to 2 Hz differs by 1210 % ± 200 %, phase 40 deg (coherence 0.97)" in told
-    assert "4.54 % ± 0.5 %" in text_of(replace(WORDS, error_responses=rows))
+    assert "psi to u_M from 1 to 2 Hz differs by 1210 ± 210 %, phase 40 deg (coherence 0.97)" in told
+    assert "4.54 ± 0.52 %" in text_of(replace(WORDS, error_responses=rows))
 
 
 def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> None:

@@ -4,6 +4,7 @@ from math import degrees
 
 from diagnosis.explain.error_response import BELIEVED
 from records.diagnosis import Diagnosis, ErrorResponse
+from records.text.uncertain import with_sd
 from twinlaw.pages.diagnose.words import shown
 from twinlaw.pages.page import Section, Table
 
@@ -44,9 +45,4 @@ def _band(row: ErrorResponse) -> str:
 
 
 def _size(row: ErrorResponse) -> str:
-    return f"{_percent(row.error, 3)} ± {_percent(row.sd, 1)}"
-
-
-def _percent(share: float, digits: int) -> str:
-    """So many digits, and no power of ten: an answer may be ten times the model's."""
-    return f"{float(f'{100.0 * share:.{digits}g}'):.10g} %"
+    return f"{with_sd(100.0 * row.error, 100.0 * row.sd)} %"

@@ -69,7 +69,7 @@ def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, flo
     for h in diagnosis.effects[:MOST]:
         lines = [
             (name if place == 0 else f"  with {name}", f"{h.probability:.3f}" if place == 0 else "", size)
-            for place, (name, _, size) in enumerate(sized(h, widths, " ", 2))
+            for place, (name, _, size) in enumerate(sized(h, widths, " "))
         ]
         ranked.append((h.probability, lines))
     alone = parameters_alone(diagnosis)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from records.diagnosis import Diagnosis, Hypothesis
+from records.text.uncertain import to_sd
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
@@ -53,7 +54,7 @@ def _sizes(hypothesis: Hypothesis) -> dict[str, str]:
     several = " + " in hypothesis.effect
     for symbol, entry in hypothesis.parameters.items():
         name = symbol.rpartition(".")[0] if several else hypothesis.effect
-        told = f"{symbol.rpartition('.')[2]} = {entry.value:.3g} {plain_unit(entry.unit)}".rstrip()
+        told = f"{symbol.rpartition('.')[2]} = {to_sd(entry.value, entry.sd)} {plain_unit(entry.unit)}".rstrip()
         found.setdefault(name, f" with {told}")
     return found
 

@@ -10,6 +10,7 @@ from records.diagnosis import Diagnosis, Hypothesis
 from records.quality import MISFIT
 from records.reasons import DOUBTS, Note
 from records.text.functional_class import Dependence, parse_class
+from records.text.uncertain import with_sd
 from records.text.units import label, unit_of
 from sim.added_effects import every_effect
 
@@ -121,11 +122,8 @@ def _signal(depends: Dependence) -> str:
     return _SIGNALS.get(name, name)
 
 
-def sized(
-    hypothesis: Hypothesis, widths: Mapping[str, float], equals: str = " = ", digits: int = 1
-) -> list[tuple[str, str, str]]:
-    """Each effect of a hypothesis once: its name, its class, and its parameters; `widths` between the bounds by "place.effect.symbol",
-    `digits` of a deviation."""
+def sized(hypothesis: Hypothesis, widths: Mapping[str, float], equals: str = " = ") -> list[tuple[str, str, str]]:
+    """Each effect of a hypothesis once: its name, its class, and its parameters; `widths` between the bounds by "place.effect.symbol"."""
     names, classes = hypothesis.effect.split(" + "), hypothesis.class_.split(" + ")
     classes += [""] * (len(names) - len(classes))
     joint = len(names) > 1
@@ -139,7 +137,7 @@ def sized(
         sizes = [
             f"{symbol} not told by these data"  # it might as well be any between its bounds
             if entry.sd > widths.get(f"{name}.{symbol}", math.inf)
-            else f"{symbol}{equals}{entry.value:.4g} ± {entry.sd:.{digits}g} {plain_unit(entry.unit)}".strip()
+            else f"{symbol}{equals}{with_sd(entry.value, entry.sd)} {plain_unit(entry.unit)}".strip()
             for symbol, entry in own.items()
         ]
         lines.append((name, class_, ", ".join(sizes)))

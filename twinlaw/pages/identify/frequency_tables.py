@@ -9,7 +9,9 @@ from identification.frequency.pairs import Pair, apart
 from identification.frequency.quality import check_looks
 from identification.frequency.result import FrequencyIdentification, TimeCheck
 from identification.frequency.truth import Truth
+from identification.results.result import NORMAL
 from records.quality import MISFIT
+from records.text.uncertain import EXACT, interval, to_sd, with_sd
 from records.text.units import label, unit_of
 from twinlaw.pages.identify.truth import HEADING as TRUTH_HEADING
 from twinlaw.pages.identify.truth import off, told, z
@@ -110,7 +112,7 @@ def _matrix(of: StateSpaces, name: str, states: Sequence[str], columns: Sequence
         (
             _rate(state),
             *(
-                f"{value:.4g}" + (f" ± {1.96 * sd:.2g}" if sd > least else "")
+                with_sd(value, NORMAL * sd) if sd > least else f"{value:.{EXACT}g}"
                 for value, sd in zip(line, own, strict=True)
             ),
         )
@@ -136,6 +138,6 @@ def element_tables(found: FrequencyIdentification, truth: Truth) -> list[Table]:
         for i, j in zip(*np.nonzero(sds > least), strict=True):
             value, sd, known = float(values[i, j]), float(sds[i, j]), float(true[i, j])
             element = f"{name}: {_rate(model.states[i])} by {label(columns[j])}"
-            interval = f"{value - 1.96 * sd:.4g} .. {value + 1.96 * sd:.4g}"
-            rows.append((element, f"{value:.4g}", interval, told(known), off(value, known), z(value, sd, known)))
+            within = interval(value - NORMAL * sd, value + NORMAL * sd, sd)
+            rows.append((element, to_sd(value, sd), within, told(known), off(value, known), z(value, sd, known)))
     return [Table(rows, ("element", "value", "95 % interval", *TRUTH_HEADING))]

@@ -11,6 +11,7 @@ from identification.results.quality import identification_quality
 from identification.results.result import Identification
 from identification.stages.estimate import Estimate
 from records.experiment import Experiment
+from records.text.uncertain import to_sd
 from records.text.units import label, shown
 from sim.columns import reference_name
 from twinlaw.pages.identify.residuals import fit_section
@@ -130,17 +131,17 @@ def _rotor_panel(stage: Estimate, linear: Estimate, number: int, label: str) -> 
 def _gravity(experiment: Experiment, result: Identification) -> Section:
     """Rest angles over weights and the curve of eq (11)."""
     found, facts = experiment.streams["balance"], {entry.name: entry.value for entry in result.aids}
-    tau_Nm = next(entry.value for entry in result.estimates if entry.name == "tau_gE")
+    tau = next(entry for entry in result.estimates if entry.name == "tau_gE")
     psi = np.linspace(float(found["psi_rad"].min()), float(found["psi_rad"].max()), 100)
     g = result.plant.parameters["g"].values[0]
-    weight = tau_Nm * np.cos(psi + facts["Psi_m"]) / (facts["lever"] * g * np.cos(psi + facts["lever_angle"]))
+    weight = tau.value * np.cos(psi + facts["Psi_m"]) / (facts["lever"] * g * np.cos(psi + facts["lever_angle"]))
     panel = Panel(
         "elevation [deg]",
         (
             Curve(
                 1e3 * found["weight_kg"], np.degrees(found["psi_rad"]), "at rest, from above and below", BLUE, "", "o"
             ),
-            Curve(1e3 * weight, np.degrees(psi), f"tau_gE = {tau_Nm:.5g} N m", ORANGE),
+            Curve(1e3 * weight, np.degrees(psi), f"tau_gE = {to_sd(tau.value, tau.sd)} N m", ORANGE),
         ),
     )
     sentence = "Weights at the tail and the angles at which the arm rests; dry friction lets it rest to either side of its balance."

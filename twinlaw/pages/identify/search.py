@@ -8,6 +8,7 @@ import numpy as np
 from identification.results.result import Estimated
 from identification.search.methods import Searched
 from identification.stages.estimate import Estimate
+from records.text.uncertain import to_sd
 from records.text.units import unit_of
 from sim.bind import BoundPlant
 from twinlaw.pages.identify.truth import off, told, true_values, z
@@ -68,8 +69,8 @@ def _rows(
         known = truth.get(name)
         cells += [told(known)] if truth else []
         for found in stage.searched:
-            cells.append(f"{found.values[place]:.5g}")
             value = float(found.values[place])
+            cells.append(to_sd(value, sd))
             cells += [off(value, known), z(value, sd, known)] if truth else []
         rows.append(tuple(cells))
     return rows

@@ -7,6 +7,7 @@ from identification.results.quality import fit_looks, held_out_look
 from identification.results.result import Estimated
 from identification.stages.estimate import Estimate
 from identification.uncertainty.residuals import ResidualTest
+from records.text.uncertain import interval, to_sd
 from twinlaw.pages.identify.truth import HEADING as TRUTH_HEADING
 from twinlaw.pages.identify.truth import off, told, z
 from twinlaw.pages.measured import measured
@@ -42,8 +43,8 @@ def estimate_rows(
             entry.name,
             entry.unit,
             f"{entry.start:.4g}",
-            f"{entry.value:.5g}",
-            f"{entry.lower:.5g} .. {entry.upper:.5g}",
+            to_sd(entry.value, entry.sd),
+            interval(entry.lower, entry.upper, entry.sd),
             _relative(entry),
             *(() if truth is None else _against(entry, truth.get(entry.name))),
             "at its bound" if entry.name in at_bound else _untold(entry),
