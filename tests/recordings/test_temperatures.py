@@ -7,10 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from recordings.formats.clocks import with_clocks
 from recordings.formats.text import delimited
 from recordings.importing import Imported, log_of_contents
 from recordings.layout import FOUND
 from recordings.mapping.mapping import ColumnMapping
+from recordings.signals import Signal
 from records.errors import BadInput
 from records.log import LogColumns
 
@@ -64,6 +66,19 @@ def test_a_temperature_beside_a_clock_is_none(clock: str, heading: str, tmp_path
     log = imported(tmp_path, f"{clock},heat_W,{heading},rise_K_s", t_s, 30.0, T_K, rise_K_s, T_K=heading.split()[0]).log
     np.testing.assert_allclose(log.t_s, t_s, atol=1e-9)
     np.testing.assert_allclose(log.column("T_K"), T_K, rtol=1e-9)
+
+
+def test_a_column_T_that_alone_is_named_as_times_are_is_the_clock(tmp_path: Path) -> None:
+    table = ("T,heat_W,heater_K,rise_K_s", t_s, 30.0, T_K, rise_K_s)
+    np.testing.assert_allclose(imported(tmp_path, *table, T_K="heater_K").log.t_s, t_s, atol=1e-9)
+
+
+def test_a_structure_s_own_T_stays_its_clock_beside_another_structure_s_time() -> None:
+    names = ("one.T", "one.rise", "other.time", "other.T", "other.rise")
+    clocks = {name: signal.clock for name, signal in with_clocks({name: Signal(t_s) for name in names}).items()}
+    assert clocks == {
+        "one.T": None, "one.rise": "one.T", "other.time": None, "other.T": "other.time", "other.rise": "other.time",
+    }  # fmt: skip
 
 
 def test_where_no_times_are_a_rate_is_not_proposed_as_them(tmp_path: Path) -> None:
