@@ -67,7 +67,7 @@ def _rows(
             *([bits] if coded else []),
         ]
         known = truth.get(name)
-        cells += [told(known)] if truth else []
+        cells += [told(known, sd)] if truth else []
         for found in stage.searched:
             value = float(found.values[place])
             cells.append(to_sd(value, sd))

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from records.text.uncertain import to_sd
 from sim.bind import BoundPlant
 
 HEADING = ("truth", "error", "z")
@@ -14,9 +15,9 @@ def true_values(truth: BoundPlant | None) -> Mapping[str, float]:
     return dict(zip(map(str, truth.model.parameter_symbols), truth.p.tolist(), strict=True))
 
 
-def told(known: float | None) -> str:
-    """A true value as text; empty where it is not known."""
-    return "" if known is None else f"{known:.5g}"
+def told(known: float | None, sd: float) -> str:
+    """A true value to the place of the estimate beside it, whose `sd` it is; empty where it is not known."""
+    return "" if known is None else to_sd(known, sd)
 
 
 def off(value: float, known: float | None) -> str:
