@@ -15,10 +15,22 @@ def test_a_line_ends_neither_before_a_per_cent_sign_nor_within_an_option() -> No
     assert "Green: 5\u00a0%." in page
 
 
-def test_a_short_cell_is_one_line_whatever_stands_in_it() -> None:
-    table = Table([("3.22e-17", "0.057 + 0.439i", "a sentence that may be broken", "green", "0.06 dB, 0.7 deg, 5 %")])
+def test_a_short_cell_or_an_interval_is_one_line_whatever_stands_in_it() -> None:
+    table = Table(
+        [
+            (
+                "3.22e-17",
+                "0.057 + 0.439i",
+                "a sentence that may be broken",
+                "green",
+                "0.06 dB, 0.7 deg, 5 %",
+                "1.01531e-06 .. 1.01674e-06",
+            )
+        ]
+    )
     page = page_text(Page("a", "b", Colour.GREEN, "", (), (Section("Why", tables=(table,)),)))
     assert '<td class="whole">3.22e-17</td><td class="whole">0.057 + 0.439i</td>' in page
+    assert '<td class="whole">1.01531e-06 .. 1.01674e-06</td>' in page  # a browser breaks lines behind a hyphen
     assert "<td>a sentence" in page
     assert "<td>0.06\u00a0dB, 0.7\u00a0deg, 5\u00a0%</td>" in page
     assert '<td class="good whole">green</td>' in page
