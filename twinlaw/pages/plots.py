@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatterSciNotation
 from numpy.typing import NDArray
 
 from twinlaw.pages.margins import LEGEND_POINTS, arrange, names_in
@@ -111,6 +112,8 @@ def grid(
                 _draw(axes, panel, legend=False)
                 if log_x:
                     axes.set_xscale("log")
+                    axes.xaxis.set_major_formatter(PlainLog())
+                    axes.xaxis.set_minor_formatter(PlainLog())
         for axes, title in zip(cells[0], titles, strict=True):
             axes.set_title(title, fontsize=9.0)
         for axes in cells[-1]:
@@ -119,6 +122,13 @@ def grid(
         figure.legend(list(handles.values()), list(handles), loc="lower center", ncols=COLUMNS, fontsize=LEGEND_POINTS)
         arrange(figure, cells, titles=True, below_in=names_in(len(handles), COLUMNS))
         return svg(figure)
+
+
+class PlainLog(LogFormatterSciNotation):
+    """Ticks of a logarithmic axis as plain numbers: within one decade most of them bear one, and 4 is read sooner than 4 x 10^0."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return f"{x:g}" if super().__call__(x, pos) else ""
 
 
 def _named(axes: Axes) -> list[tuple[Any, str]]:

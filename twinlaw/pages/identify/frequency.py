@@ -101,7 +101,7 @@ def _responses(found: FrequencyIdentification, plots: Mapping[str, str], truth: 
         "Conditioned frequency responses from windows of "
         + ", ".join(f"{entry.length_s:.3g}" for entry in fit.responses.windows)
         + " s; points are those that were matched. A dotted line is the plant file as it was.",
-        f"Secant searches from {len(fit.searches)} starts ended at a cost J of "
+        f"Secant searches from {len(fit.searches)} start{'s' if len(fit.searches) > 1 else ''} ended at a cost J of "
         + ", ".join(f"{entry.J:.4g}" for entry in fit.searches)
         + f", before finite windows were corrected for; with that it is {fit.J:.4g}.",
         "Misfit is what the model leaves over what random errors explain, both rms.",

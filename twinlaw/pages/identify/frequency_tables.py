@@ -11,7 +11,7 @@ from identification.frequency.result import FrequencyIdentification, TimeCheck
 from identification.frequency.truth import Truth
 from identification.results.result import NORMAL
 from records.quality import MISFIT
-from records.text.uncertain import EXACT, interval, to_sd, with_sd
+from records.text.uncertain import EXACT, interval, to_sd
 from records.text.units import label, unit_of
 from twinlaw.pages.identify.truth import HEADING as TRUTH_HEADING
 from twinlaw.pages.identify.truth import off, told, z
@@ -112,7 +112,7 @@ def _matrix(of: StateSpaces, name: str, states: Sequence[str], columns: Sequence
         (
             _rate(state),
             *(
-                with_sd(value, NORMAL * sd) if sd > least else f"{value:.{EXACT}g}"
+                f"{to_sd(value, sd)} ± {to_sd(NORMAL * sd, sd)}" if sd > least else f"{value:.{EXACT}g}"
                 for value, sd in zip(line, own, strict=True)
             ),
         )
