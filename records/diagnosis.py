@@ -222,7 +222,7 @@ def load_diagnosis(path: Path) -> Diagnosis:
 
 def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
     """A diagnosis from the content of its file; raises BadInput."""
-    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.schema(content, where, SCHEMA)
     names = [_json_name(field.name) for field in fields(Diagnosis)]
     checks.keys(content, where, ("schema", *(name for name in names if name not in FURTHER)), (*FURTHER, QUALITY))
     p = content["false_alarm_probability"]

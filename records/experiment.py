@@ -58,7 +58,7 @@ def stream_path(path: Path, name: str) -> Path:
 def load_experiment(path: Path) -> Experiment:
     """Read an experiment with its streams; raises BadInput naming file, key and remedy."""
     content, where = read_toml(path, "experiment"), str(path)
-    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.schema(content, where, SCHEMA)
     checks.keys(content, where, ("schema", "kind", "plant", "mount", "locked", "streams", "facts"))
     if content["mount"] not in MOUNTS:
         expected = " or ".join(map(repr, MOUNTS))

@@ -251,7 +251,7 @@ def _sidecar(path: Path) -> Mapping[str, Any]:
 
 def _check_sidecar(sidecar: Mapping[str, Any], where: str, columns: LogColumns) -> dict[str, str | None]:
     """Check every key; returns `table_digest` and `arithmetic` of the controller that flew, None where they are not named."""
-    checks.schema(sidecar, f"{where}: schema", SCHEMA)
+    checks.schema(sidecar, where, SCHEMA)
     checks.keys(sidecar, where, ("schema", "plant", "sample_period_s", "loop", "locked"), ("controller", "source"))
     if checks.text(sidecar["plant"], f"{where}: plant") != columns.plant:
         raise BadInput(

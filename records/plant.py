@@ -96,7 +96,7 @@ def load_plant(path: Path) -> Plant:
 
 def parse_plant(content: Mapping[str, Any], name: str, where: str, folder: Path = Path()) -> Plant:
     """A plant from the content of its file in `folder`; raises BadInput naming `where`, the file, and the key."""
-    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.schema(content, where, SCHEMA)
     source = "equations" if "equations" in content else "model"
     checks.keys(
         content, where, ("schema", source, "parameters", "sensors"), ("design", "board", "effects", "correlation")

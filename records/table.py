@@ -186,7 +186,7 @@ def load_table(path: Path) -> ControllerTable:
 
 def parse_table(content: Mapping[str, Any], where: str) -> ControllerTable:
     """A controller table from the content of its file; raises BadInput."""
-    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.schema(content, where, SCHEMA)
     table = ControllerTable(**parse_frame(content, where, _axis))
     demand_digest(table.digest, content, where)
     return table

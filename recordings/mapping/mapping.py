@@ -53,7 +53,7 @@ def load_mapping(path: Path) -> ColumnMapping:
     """The mapping in a TOML file; raises BadInput for one that is missing or wrong."""
     content = read_toml(path, "mapping")
     where = str(path)
-    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.schema(content, where, SCHEMA)
     checks.keys(content, where, ("schema", "columns"), _OPTIONS)
     columns = checks.table(content["columns"], f"{where}: columns")
     texts = {

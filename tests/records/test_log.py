@@ -132,7 +132,7 @@ def test_a_wrong_csv_is_refused_with_its_line(files, csv, message):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("run-log/1", "run-log/9", r"a\.toml: schema: schema: got 'run-log/9', expected 'run-log/1'"),
+        ("run-log/1", "run-log/9", r"a\.toml: schema: got 'run-log/9', expected 'run-log/1'"),
         ('"ce150"', '"aeroshield"', "plant: got 'aeroshield', expected 'ce150'"),
         ('"ce150"', "3", "plant: text: got 3"),
         ("0.01", "0.0", "sample_period_s: number: got 0.0, expected a number above 0"),

@@ -58,7 +58,7 @@ def load_flights(folder: Path) -> tuple[Flight, ...]:
 def load_flight(path: Path) -> Flight:
     """Read a sidecar and its CSV; raises BadInput that names file, key or column, and remedy, also for another unit or condition."""
     content, where = read_toml(path, "flight test"), str(path)
-    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.schema(content, where, SCHEMA)
     checks.keys(content, where, _KEYS)
     period_s = checks.positive(content["sample_period_s"], f"{where}: sample_period_s")
     signals = _signals(path.with_suffix(".csv"), period_s)

@@ -33,7 +33,7 @@ def load_starts(path: Path, flights: Sequence[Flight]) -> Starts:
     measured one: its run would begin outside, so its unit or its flight is wrong.
     """
     content, where = read_toml(path, "starts"), str(path)
-    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.schema(content, where, SCHEMA)
     sections = {name: section for name, section in content.items() if name != "schema"}
     if not sections:
         raise BadInput("starts", where, "no flight", "a section [FLIGHT] with STATE = VALUE", "add one for each flight")
