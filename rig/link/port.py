@@ -134,4 +134,6 @@ def _reason(error: OSError | ValueError) -> str:
     """What the system says of it, once; pyserial says it twice, with the port's name in between."""
     if isinstance(error, OSError) and error.errno:
         return os.strerror(error.errno)
+    if error.__context__ is not None and errno.ENOTTY in error.__context__.args:
+        return "a file or device that is no serial line"
     return " ".join(str(error).split()) or type(error).__name__

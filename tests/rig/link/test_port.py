@@ -36,6 +36,14 @@ def test_a_port_in_use_is_refused_and_free_again_when_it_is_closed(device: str) 
     open_port(device, timeout_s=0.1).close()
 
 
+def test_a_file_that_is_no_serial_line_is_called_that(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.touch()
+    for url in (str(path), os.devnull):
+        with pytest.raises(BadInput, match=": got a file or device that is no serial line, expected"):
+            open_port(url, timeout_s=0.1)
+
+
 @pytest.mark.parametrize(
     ("lines", "calls"),
     [
