@@ -48,6 +48,8 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.proofs and not board.is_emulated:
         remedy = "leave --chip out: all other proofs are of the C, which is the same for every chip"
         raise BadInput("--proofs", "verify", board.chip, "an emulated chip, whose cycles are counted", remedy)
+    if chosen.all and not chosen.proofs:
+        raise BadInput("--all", "verify", "no --proofs", "both, as --all is of the proofs' mutants", "add --proofs")
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
     bound = load_bound(chosen.plant)
     recorded = [recorded_replay(path, table, bound, chosen.arithmetic) for path in chosen.log]

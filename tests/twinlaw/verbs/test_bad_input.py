@@ -147,6 +147,11 @@ def test_a_wrong_command_line_is_one_clear_line(
         assert word in said.err
 
 
+def test_all_mutants_without_the_proofs_that_judge_them_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", "--all"]) == 2
+    assert "verify: --all: got no --proofs, expected both" in capsys.readouterr().err
+
+
 def test_what_is_wrong_is_an_object_for_a_program_and_the_same_line_on_stderr(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
