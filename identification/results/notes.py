@@ -6,6 +6,7 @@ from identification.results.held import Leaning
 from identification.stages.estimate import Estimate
 from identification.uncertainty.identifiability import Direction
 from identification.uncertainty.residuals import ResidualTest
+from records.text.uncertain import to_sd
 from records.text.units import unit_of
 
 LEAST_CHANCE = 1e-300
@@ -21,14 +22,13 @@ def stage_notes(title: str, stage: Estimate, units: Mapping[str, str]) -> tuple[
     if len(stage.unseen) > MOST_DIRECTIONS:
         blind.append(f"{title}: {len(stage.unseen) - MOST_DIRECTIONS} more such directions, in identification.json")
     pulled = [
-        f"{title}: contradicts earlier data in {entry.name}: {entry.before:.4g} before, {_with_unit(entry.after, entry.name, units)} now, "
-        f"{entry.sds:.0f} sd apart; find out what differs, or leave one of them out"
+        f"{title}: contradicts earlier data in {entry.name}: "
+        f"{_apart(entry.before, 'before', entry.after, 'now', entry.sds, units.get(entry.name, ''))}"
         for entry in stage.contradictions[:3]
     ]
     against = [
-        f"{title}: {entry.run} contradicts {entry.against} in {entry.name}: {entry.own:.4g} by itself, "
-        f"{_with_unit(entry.others, entry.name, units)} by {entry.against}, {entry.sds:.0f} sd apart; "
-        "find out what differs, or leave one of them out"
+        f"{title}: {entry.run} contradicts {entry.against} in {entry.name}: "
+        f"{_apart(entry.own, 'by itself', entry.others, f'by {entry.against}', entry.sds, units.get(entry.name, ''))}"
         for entry in stage.discords[:3]
     ]
     coloured = [
@@ -44,8 +44,13 @@ def stage_notes(title: str, stage: Estimate, units: Mapping[str, str]) -> tuple[
     return (*blind, *bound, *pulled, *against, *coloured)
 
 
-def _with_unit(value: float, name: str, units: Mapping[str, str]) -> str:
-    return f"{value:.4g} {units.get(name, '')}".rstrip()
+def _apart(one: float, whose: str, other: float, others: str, sds: float, unit: str) -> str:
+    """Two values that are so many sd of their difference apart, and what to do."""
+    sd = abs(one - other) / sds
+    return (
+        f"{to_sd(one, sd)} {whose}, {f'{to_sd(other, sd)} {unit}'.rstrip()} {others}, {sds:.0f} sd apart; "
+        "find out what differs, or leave one of them out"
+    )
 
 
 def _times(factor: float) -> str:
