@@ -44,6 +44,12 @@ class Parameter:
         """The standard deviations as a tuple of the same length as `values`."""
         return self.sd if isinstance(self.sd, tuple) else (self.sd,)
 
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The unit of each of `values`: entries of "[s^-1, rad^-1]" one by one, one unit for all of them where there is but one."""
+        parts = self.unit.strip("[]").split(",") if self.unit.startswith("[") else [self.unit]
+        return tuple(part.strip() for part in parts) * (len(self.values) // len(parts))
+
 
 @dataclass(frozen=True)
 class Equations:

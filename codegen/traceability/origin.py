@@ -181,8 +181,8 @@ def _design_at(
 
 
 def _told(parameter: Parameter, name: str, sensitivity: float | None, element: int = 0) -> ParameterTrace:
-    value, sd = parameter.values[element], parameter.sds[element]
-    return ParameterTrace(name, value, sd, parameter.unit, parameter.source, sensitivity)
+    value, sd, unit = parameter.values[element], parameter.sds[element], parameter.units[element]
+    return ParameterTrace(name, value, sd, unit, parameter.source, sensitivity)
 
 
 def _refuse_another_plant(bound: BoundPlant, table: ControllerTable) -> None:

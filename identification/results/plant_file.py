@@ -17,13 +17,8 @@ def numbers(plant: Plant) -> dict[str, tuple[float, float, str]]:
     """Value, sd and unit of each coefficient."""
     values = [value for entry in plant.parameters.values() for value in entry.values]
     sds = [sd for entry in plant.parameters.values() for sd in entry.sds]
-    units = [unit for entry in plant.parameters.values() for unit in _units(entry)]
+    units = [unit for entry in plant.parameters.values() for unit in entry.units]
     return dict(zip(coefficient_names(plant.parameters), zip(values, sds, units, strict=True), strict=True))
-
-
-def _units(entry: Parameter) -> list[str]:
-    parts = entry.unit.strip("[]").split(",") if entry.unit.startswith("[") else [entry.unit]
-    return [part.strip() for part in parts] * (len(entry.values) // len(parts))
 
 
 def with_belief(plant: Plant, belief: Belief, names: Sequence[str]) -> Plant:

@@ -107,6 +107,12 @@ def test_the_gain_of_the_loop_is_shared_by_rotor_and_inertia() -> None:
     assert not {"J_A", "b_vA"} & set(influence), "the azimuth has no part in the elevation's gains"
 
 
+def test_a_coefficient_of_a_polynomial_bears_its_own_unit() -> None:
+    # Truth: speeds in rad/s to powers 0, 1, 2 add to a rate in s^-1.
+    units = {entry.name: entry.unit for entry in traced("elevation_q_3_V_rad[0]").parameters}
+    assert (units["p_bM[0]"], units["p_bM[1]"], units["p_bM[2]"]) == ("s^-1", "rad^-1", "rad^-2 s")
+
+
 def test_a_limit_is_the_plant_s_own_parameter() -> None:
     (parameter,) = traced("LAW_U_T_MAX_V").parameters
     assert (parameter.name, parameter.value, parameter.sensitivity) == ("uT_max", 10.0, None)
