@@ -197,13 +197,13 @@ def added(
     holdout: Holdout, first: FittedHypothesis, probability: float
 ) -> tuple[FittedHypothesis, tuple[Note, ...], tuple[Decision, ...]]:
     """What is to be added: what has more than half of all `probability` unless the hold-out is predicted worse by it, over all horizons or
-    surely over the longest, for which a model is used; what has less only where it is predicted better besides; else the plant without
-    it, as is told then."""
+    surely over the longest, for which a model is used; what has less only where it is predicted better, and over the longest no worse;
+    else the plant without it, as is told then."""
     told, of = holdout.score_of_plant(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
     longest = holdout.score_of_longest(first.fit.hypothesis)
     likely = probability > decisions.LIKELIER_THAN_NOT
     least = -float(decisions.MATTERS) if likely else float(decisions.MATTERS)
-    lowest = -max(float(decisions.MATTERS), decisions.SURELY * longest.sd)
+    lowest = -max(float(decisions.MATTERS), decisions.SURELY * longest.sd) if likely else 0.0
     rules = (
         held_against("added", of, told.gain, least, NATS, "nothing added" if told.gain < least else "added"),
         held_against("added_for_long", of, longest.gain, lowest, NATS, _no_worse(longest.gain >= lowest)),
