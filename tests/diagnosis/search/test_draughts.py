@@ -20,10 +20,10 @@ from sim.effects.gust import SINES, TURN
 from tests.diagnosis.conftest import LONG_S, Fly
 from tests.soak import SOAK
 
-# Truth: 1.5 mN m, 0.04 of what such an axis can be pushed with and twice what is told as a gust, forgotten in 0.7 s. Every flight has
+# Truth: 3 mN m, 0.075 of what such an axis can be pushed with and nearly twice what is told as a gust, forgotten in 0.7 s. Every flight has
 # the same draw of it (sim/effects/gust.py eq (1)), whose own size and time in so few seconds are what a flight can tell.
 FLIGHTS = (91, 92) if SOAK else (91,)
-GUST = {"elevation.gust": {"sigma": 1.5e-3, "T": 0.7}}
+GUST = {"elevation.gust": {"sigma": 3e-3, "T": 0.7}}
 
 
 def drawn() -> dict[str, float]:
