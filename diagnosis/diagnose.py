@@ -40,20 +40,20 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = seen_of(bound, material)
     material = replace(material, notes=(*material.notes, *_columns(seen, material.firmware)))
-    seen = beside_noise(seen)
+    noisy, seen = seen, beside_noise(seen)
     if not alarmed(seen.detection.p):
-        return _nothing(seen, material, Exit.NOTHING_SEEN)
+        return _nothing(seen, noisy, material, Exit.NOTHING_SEEN)
     seen, found = _explained(seen)
     if found is None:
-        return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
+        return _nothing(seen, noisy, material, Exit.YIELDING_EXPLAINS)
     beyond = retune(seen.case, seen.retuned.fit)
     seen = confirmed_by(seen, found, beyond)
     if not alarmed(seen.detection.p):
-        return _nothing(seen, material, Exit.UNEXPLAINED)
+        return _nothing(seen, noisy, material, Exit.UNEXPLAINED)
     seen, judged = _judged(seen, material, found, beyond)
     seen, matters = of_consequence(seen, judged)
     if not matters:
-        return _nothing(seen, replace(material, notes=judged.notes), Exit.TOO_SMALL, judged.holdout)
+        return _nothing(seen, noisy, replace(material, notes=judged.notes), Exit.TOO_SMALL, judged.holdout)
     return gap(seen, material, judged)
 
 
@@ -76,13 +76,13 @@ def _in_their_rows(firmware: Firmware | None) -> bool:
     return firmware is not None and firmware.bit_exact
 
 
-def _nothing(seen: Seen, material: Material, reason: Exit, holdout: Holdout | None = None) -> Result:
-    """The answer where no effect shows: a gust where the noise is one, else none. Raises BadInput where logs that were not fitted are
-    wired otherwise."""
-    gusty, rules = draught(seen.case, seen.retuned)
+def _nothing(seen: Seen, noisy: Seen, material: Material, reason: Exit, holdout: Holdout | None = None) -> Result:
+    """The answer where no effect shows: a gust where the noise is one, of the plant as it was fitted with noise, whether or not names were
+    sought without; else none. Raises BadInput where logs that were not fitted are wired otherwise."""
+    gusty, rules = draught(noisy.case, noisy.retuned)
     seen = seen.because(*rules)
     if gusty is not None:
-        return _gust(seen, material, gusty)
+        return _gust(replace(noisy, decisions=seen.decisions), material, gusty)
     if holdout is None:
         seen, holdout = _checked(seen, material)
     return _told(seen, material, holdout, reason)
