@@ -129,10 +129,10 @@ def _numbers(colour: Colour, hypothesis: Hypothesis) -> Numbers:
 
 def colours(case: Case) -> list[Colour]:
     """All that the rig may have: on axes that are not held in all logs, in outputs that any log has."""
-    return list(_colours(case))
+    return [*_pushes(case), *_misreadings(case)]
 
 
-def _colours(case: Case) -> Iterator[Colour]:
+def _pushes(case: Case) -> Iterator[Colour]:
     library = case.library
     held = set.intersection(*(set(flight.locked) for flight in case.flights))
     longest_s = decisions.LONGEST_PUSH_SHARE * max(float(np.ptp(flight.log.t_s)) for flight in case.flights)
@@ -140,9 +140,12 @@ def _colours(case: Case) -> Iterator[Colour]:
         effect = noise_on(case, index)
         if effect is not None and axis.name not in held:
             yield _push(effect, library.bound.model.places.axes[axis.name].torque_size, index, longest_s)
+
+
+def _misreadings(case: Case) -> Iterator[Colour]:
     step_s = min(flight.step_s for flight in case.flights)
-    for name in library.bound.model.outputs:
-        place = library.outputs.index(name)
+    for name in case.library.bound.model.outputs:
+        place = case.library.outputs.index(name)
         if any(np.isfinite(flight.filter_input.y[:, place]).any() for flight in case.flights):
             unit = float(np.sqrt(min(flight.filter_input.single[place] for flight in case.flights)))
             yield _misreading(name, unit, step_s)

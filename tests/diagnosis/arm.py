@@ -6,8 +6,11 @@ from functools import cache
 import numpy as np
 
 from diagnosis.detect.linearisation import Linearisation, linearised
+from diagnosis.fit import nominal
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.added_effects import library, with_effects
@@ -74,3 +77,8 @@ def plain_linearisation() -> Linearisation:
     """The fit of a run without any effect, as score tests are taken from it."""
     case = arm_case(arm_log(seconds=LONG_S))
     return linearised(case, nominal_fit(case))
+
+
+def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
+    """A fit of effects with the white noise that then remains."""
+    return as_fitted(case, nominal.settled(case, nominal_hypothesis(case, -1.5).with_effects(effects)))

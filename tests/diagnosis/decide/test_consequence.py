@@ -11,16 +11,14 @@ from diagnosis.decide.weighing import Tried, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
-from diagnosis.fit import nominal
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.result import Judged, Seen
 from diagnosis.standing import of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
-from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.arm import arm_case, arm_log, settled
 
 
 def explained(case: Case, plain: FittedHypothesis, effect: str, values: dict[str, float]) -> FittedHypothesis:
@@ -78,11 +76,6 @@ def test_a_small_gap_needs_predictions_that_are_better_than_chance(
     plain = as_fitted(case, nominal_fit(case))
     found = None if ahead_nats is None else plain
     assert of_consequence(seen(case, plain, largest), judged(found, ahead_nats))[1] is stands
-
-
-def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
-    """A fit of effects with the white noise that then remains."""
-    return as_fitted(case, nominal.settled(case, nominal_hypothesis(case, -1.5).with_effects(effects)))
 
 
 def test_what_is_there_predicts_the_logs_better_and_what_is_idle_does_not() -> None:

@@ -8,20 +8,13 @@ from diagnosis.decide.consequence import foreseen
 from diagnosis.decide.holdout import holdout_of
 from diagnosis.decide.idle import Said, shares_of, without_idle
 from diagnosis.decide.weighing import Tried, weigh
-from diagnosis.fit import nominal
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.validate.fitted_logs import FittedLogs
-from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.arm import arm_case, arm_log, settled
 
 RUB, PULL = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 3e-5}}
 SURE = 0.1  # standard error, nats: next to nothing
-
-
-def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
-    """A fit of effects with the white noise that then remains."""
-    return as_fitted(case, nominal.settled(case, nominal_hypothesis(case, -1.5).with_effects(effects)))
 
 
 @pytest.fixture(scope="module")

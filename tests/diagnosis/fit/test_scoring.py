@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.coloured_noise import _colours as colours
 from diagnosis.fit.coloured_noise import _size as size
 from diagnosis.fit.coloured_noise import _time as time
+from diagnosis.fit.coloured_noise import colours as colours
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.process_noise import LEAST_NOISE, axis_noise, white_noise
 from diagnosis.fit.scoring import LITTLE_PROMISED, Number, likeliest_numbers
