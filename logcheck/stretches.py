@@ -1,6 +1,7 @@
-"""Long logs by stretches: as many rows as a search can hold, chosen by where and how much moves, never by how the plant fits them.
+"""Dense logs by rows as a plant needs them, then long ones by stretches: as many rows as a search can hold, chosen by where and how much
+moves, never by how the plant fits them.
 
-Rows that are far denser than a plant needs are thinned first, so that a search sees a minute of it and not a second.
+A recording and its every second row then tell the same, and take as long, where both are denser than that.
 """
 
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ from records.reasons import Note
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
+ROUNDED = 1e-6  # of a sample period, that a file may state it wrong by
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +33,15 @@ class Stretches:
     of: tuple[str, ...]
 
 
-def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]) -> Stretches:
-    """The logs as they are where they hold at most MOST_READINGS, else equal parts of them that keep their own times.
+def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str], rate_rad_s: float) -> Stretches:
+    """The logs, thinned where they are many and denser than a plant of that fastest rate needs; whole where they then hold at most
+    MOST_READINGS, else equal parts of them that keep their own times.
 
     Half of a log's parts are spread evenly over it from its beginning to its end; the others are those of the rest in which outputs
     and inputs travel furthest.
     """
-    if sum(log.y.size for log in logs) <= thresholds.MOST_READINGS:
-        return Stretches(tuple(logs), tuple(names), tuple(used), (), tuple(names))
-    every = [_every(log, rows) for log, rows in zip(logs, _shares(logs), strict=True)]
+    spare = sum(log.y.size for log in logs) // thresholds.ENOUGH_READINGS
+    every = [max(min(_every(log, rate_rad_s), spare), 1) for log in logs]
     kept = [_one_in(mask, factor) for mask, factor in zip(used, every, strict=True)]
     shown = [_thinned(log, rows) if factor > 1 else log for log, rows, factor in zip(logs, kept, every, strict=True)]
     parts: list[tuple[RunLog, str, Rows, str]] = []
@@ -69,11 +71,10 @@ def _kept(log: RunLog, chosen: Sequence[slice]) -> str:
     return f"{rows} of its {len(log.t_s)} rows were looked at, as {how_many}: {spans}"
 
 
-def _every(log: RunLog, rows: int) -> int:
-    """The factor by which a log is thinned so that it shows at most `rows`; 1 for rows as far apart as logs usually have them."""
-    if len(log.t_s) <= rows or log.sample_period_s >= thresholds.DENSE_S:
-        return 1
-    return int(np.clip(-(-len(log.t_s) // rows), 1, max(int(thresholds.COARSEST_S / log.sample_period_s), 1)))
+def _every(log: RunLog, rate_rad_s: float) -> int:
+    """The factor by which a log may be thinned: its rows are then a share of the plant's shortest time constant apart, or COARSEST_S."""
+    apart_s = min(thresholds.COARSEST_S, thresholds.OF_SHORTEST / max(rate_rad_s, thresholds.OF_SHORTEST))
+    return int(apart_s / log.sample_period_s + ROUNDED)
 
 
 def _one_in(used: Rows, factor: int) -> NDArray[np.int64]:

@@ -192,10 +192,21 @@ BESIDE_ZERO_STEPS = Limit(1.5, "least moves", "an axis that passes zero reads it
 
 # stretches
 MOST_READINGS = Count(25_000, "readings", "time: two logs of a minute of two angles at 100 Hz are taken whole", "timed")
+ENOUGH_READINGS = Count(
+    8_000,
+    "readings",
+    "of a short log the dense rows are left, as each still tells of noise; three dense recordings and 20 dense cases told the same by a "
+    "half or a quarter of theirs",
+    "quanser_aero, emps; the third rig's 348, 349, 351",
+)
 STRETCHES = Count(8, "stretches", "parts of a long log")
 LEAST_STRETCH_S = Limit(10.0, "s", "a stretch is at least so long")
-DENSE_S = Limit(1e-3, "s", "rows closer than this are thinned")
-COARSEST_S = Limit(4e-3, "s", "a tenth of the shortest time constant of a plant")
+OF_SHORTEST = Limit(0.1, "of a time constant", "apart rows may be: what moves so fast is seen ten times while it does")
+COARSEST_S = Limit(
+    4e-3,
+    "s",
+    "apart, for effects that the plant file does not state: a mode of 60 Hz is seen twice a swing, a delay of some ms is told",
+)
 
 
 def table() -> Iterator[tuple[str, Decides]]:

@@ -13,6 +13,8 @@ from records.log import RunLog
 from sim.columns import log_columns
 from tests.plants import bound
 
+SLOW_RAD_S = 3.0  # of a plant that needs no row closer than COARSEST_S
+
 
 def log_of(n: int) -> RunLog:
     """A log that hardly moves but for its part from 0.60 to 0.62 of its time."""
@@ -28,7 +30,7 @@ def all_rows(log: RunLog) -> np.ndarray:
 
 def test_logs_that_a_search_can_hold_stay_whole() -> None:
     logs = [log_of(6000), log_of(6000)]
-    found = stretches(logs, [all_rows(log) for log in logs], ["one", "two"])
+    found = stretches(logs, [all_rows(log) for log in logs], ["one", "two"], SLOW_RAD_S)
     assert all(part is log for part, log in zip(found.logs, logs, strict=True))
     assert (found.names, found.notes) == (("one", "two"), ())
 
@@ -36,7 +38,7 @@ def test_logs_that_a_search_can_hold_stay_whole() -> None:
 def test_a_million_rows_are_shown_by_their_beginning_their_end_and_where_most_moves() -> None:
     long, short = log_of(1_000_000), log_of(6000)
     used = [np.arange(1_000_000) % 3 > 0, all_rows(short)]
-    found = stretches([long, short], used, ["long", "short"])
+    found = stretches([long, short], used, ["long", "short"], SLOW_RAD_S)
     assert found.logs[-1] is short
     readings = sum(log.y.size for log in found.logs)
     assert 0.8 * thresholds.MOST_READINGS < readings <= thresholds.MOST_READINGS
@@ -55,58 +57,85 @@ def test_a_million_rows_are_shown_by_their_beginning_their_end_and_where_most_mo
     assert "1000000 rows" in str(found.notes[0].said)
 
 
-def test_rows_far_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_seen() -> None:
-    n, period_s = 500_000, 60e-6  # the short log leaves room for 11 500 rows: one in 44
+def dense_log(n: int, period_s: float) -> RunLog:
     t_s = period_s * np.arange(n)
     y = np.column_stack([np.sin(t_s), np.cos(t_s)])
-    dense = RunLog(log_columns(bound("ce150").model), period_s, "open", t_s, 0.1 * y, y, seq=np.arange(n))
-    mask = np.arange(n) % 3 > 0
-    found = stretches([dense, log_of(1000)], [mask, all_rows(log_of(1000))], ["dense", "short"])
+    return RunLog(log_columns(bound("ce150").model), period_s, "open", t_s, 0.1 * y, y, seq=np.arange(n))
+
+
+def test_rows_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_seen() -> None:
+    n, period_s, factor = 500_000, 60e-6, 66  # 66 of 60 us are 3.96 ms, 67 were more than 4 ms
+    dense, mask = dense_log(n, period_s), np.arange(n) % 3 > 0
+    found = stretches([dense, log_of(1000)], [mask, all_rows(log_of(1000))], ["dense", "short"], SLOW_RAD_S)
     seen = found.logs[0]
-    assert (found.names, len(seen.t_s)) == (("dense", "short"), -(-n // 44))
-    assert seen.sample_period_s == pytest.approx(44 * period_s, rel=1e-4)
+    assert (found.names, len(seen.t_s)) == (("dense", "short"), -(-n // factor))
+    assert seen.sample_period_s == pytest.approx(factor * period_s, rel=1e-4)
     rows = np.searchsorted(dense.t_s, seen.t_s)
-    blocks = np.arange(0, n, 44)
-    np.testing.assert_array_equal(rows, blocks + (blocks % 3 == 0))  # the first of each 44 that may be used
+    blocks = np.arange(0, n, factor)
+    np.testing.assert_array_equal(rows, blocks + (mask[blocks] == 0))  # the first of each 66 that may be used
     assert found.used[0].all()
-    np.testing.assert_array_equal(seen.y, y[rows])
-    assert seen.u[7] == pytest.approx(0.1 * y[rows[7] : rows[8]].mean(axis=0))
+    np.testing.assert_array_equal(seen.y, dense.y[rows])
+    assert seen.u[7] == pytest.approx(0.1 * dense.y[rows[7] : rows[8]].mean(axis=0))
     assert seen.seq is None
     assert tuple(note.said for note in found.notes) == (
-        "dense: 11364 of its 500000 rows were looked at, spread evenly, as they are 60 microseconds apart",
+        "dense: 7576 of its 500000 rows were looked at, spread evenly, as they are 60 microseconds apart",
     )
 
 
+def test_a_fast_plant_keeps_ten_rows_of_its_shortest_time_constant() -> None:
+    dense = dense_log(20_000, 1e-3)
+    found = stretches([dense], [all_rows(dense)], ["dense"], 50.0)  # 20 ms
+    assert found.logs[0].sample_period_s == pytest.approx(2e-3, rel=1e-4)
+
+
+def test_of_a_recording_and_its_every_second_row_the_same_rows_are_seen() -> None:
+    dense = dense_log(30_000, 1e-3)
+    half = replace(
+        dense,
+        sample_period_s=2e-3,
+        t_s=dense.t_s[::2],
+        y=dense.y[::2],
+        u=dense.u.reshape(-1, 2, 2).mean(axis=1),
+        seq=None,
+    )
+    whole, halved = (stretches([log], [all_rows(log)], ["log"], SLOW_RAD_S).logs[0] for log in (dense, half))
+    np.testing.assert_array_equal(whole.t_s, halved.t_s)
+    np.testing.assert_array_equal(whole.y, halved.y)
+    np.testing.assert_allclose(whole.u, halved.u, rtol=1e-12)
+
+
+def test_of_short_logs_every_row_is_seen_however_dense() -> None:
+    dense = dense_log(thresholds.ENOUGH_READINGS // 2, 1e-3)
+    assert stretches([dense], [all_rows(dense)], ["dense"], SLOW_RAD_S).logs == (dense,)
+
+
 def test_a_long_dense_log_is_thinned_to_what_a_plant_needs_and_shown_by_stretches_of_all_of_it() -> None:
-    n, period_s = 3_000_000, 100e-6
-    t_s = period_s * np.arange(n)
-    y = np.column_stack([np.sin(t_s), np.cos(t_s)])
-    dense = RunLog(log_columns(bound("ce150").model), period_s, "open", t_s, 0.1 * y, y)
-    found = stretches([dense], [all_rows(dense)], ["dense"])
+    dense = dense_log(3_000_000, 100e-6)
+    found = stretches([dense], [all_rows(dense)], ["dense"], SLOW_RAD_S)
     # 12 500 rows of 4 ms are 50 s, which is five stretches of ten seconds and more.
     assert len(found.logs) == 5
     assert [log.sample_period_s for log in found.logs] == pytest.approx([0.004] * 5, rel=1e-4)
     assert found.logs[0].t_s[0] == 0.0
-    assert found.logs[-1].t_s[-1] == pytest.approx(t_s[-1], abs=0.02)
+    assert found.logs[-1].t_s[-1] == pytest.approx(dense.t_s[-1], abs=0.02)
     assert "as 5 stretches" in str(found.notes[1].said)
 
 
 def test_a_log_with_an_output_that_was_never_measured_is_cut_without_warnings(recwarn: pytest.WarningsRecorder) -> None:
     log = log_of(60_000)
     log.y[:, 0] = np.nan
-    assert len(stretches([log], [all_rows(log)], ["log"]).logs) == 8
+    assert len(stretches([log], [all_rows(log)], ["log"], SLOW_RAD_S).logs) == 8
     assert not [str(warning.message) for warning in recwarn]
 
 
 def test_a_single_stretch_is_called_one() -> None:
     logs = [log_of(6000) for _ in range(20)]
-    found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(20)])
+    found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(20)], SLOW_RAD_S)
     assert all("as 1 stretch: " in str(note.said) for note in found.notes)
 
 
 def test_many_logs_share_alike_and_none_is_torn_to_pieces() -> None:
     logs = [log_of(6000) for _ in range(12)]
-    found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(12)])
+    found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(12)], SLOW_RAD_S)
     assert sum(log.y.size for log in found.logs) <= thresholds.MOST_READINGS
     assert len(found.logs) == 12
     assert {len(log.t_s) for log in found.logs} <= {1041, 1042}  # 25 000 readings of two outputs, in twelve

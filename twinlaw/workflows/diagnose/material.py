@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from diagnosis.diagnose import Material
 from logcheck.breaks import unbroken
 from logcheck.integrity import LogIntegrity, as_read, demand, examine
@@ -20,6 +22,7 @@ from replay.variants import EARLY_OUTPUT
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
+from sim.substeps import fastest_rad_s
 from toolchain.memory import keep_freed_memory
 from twinlaw.pages.diagnose.firmware import KIND, differs
 
@@ -53,7 +56,8 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     used, begins = [~entry.excluded for entry in integrity.logs], [entry.begins for entry in integrity.logs]
     whole = unbroken(timed[:split], used[:split], begins[:split], names[:split])
     checked = unbroken(timed[split:], used[split:], begins[split:], names[split:])
-    parts = stretches(whole.logs, whole.used, whole.names)
+    rate_rad_s = fastest_rad_s(bound, np.zeros(len(bound.model.states)))
+    parts = stretches(whole.logs, whole.used, whole.names, rate_rad_s)
     flown = [_flown(*entry) for entry in zip(read[split:], holdout, replays[split:], strict=True)]
     tables = dict(zip(names[split:], flown, strict=True))
     return Material(
