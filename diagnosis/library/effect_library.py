@@ -144,14 +144,17 @@ class EffectLibrary:
         return name in self.whole or name in self.noises
 
     def compiled(self, effects: Iterable[str]) -> CompiledFilter:
-        """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with all.
+        """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with axes that yield too, with all.
 
-        States of effects that are off sleep, and take next to no time.
+        States of effects that are off sleep, but the equations of all are asked.
         """
-        wanted = set(effects)
-        others = wanted.intersection(self.whole)
-        carried = () if not others else self.narrow if others.issubset(self.narrow) else self.whole
-        return _compiled(self, (*carried, *self.noises))
+        return _compiled(self, (*self.carrying(effects), *self.noises))
+
+    def carrying(self, effects: Iterable[str]) -> tuple[str, ...]:
+        """What that variant carries beside noise."""
+        wanted = set(effects).intersection(self.whole)
+        variants = ((), self.narrow, (*self.narrow, *self.bristles), self.whole)
+        return next(variant for variant in variants if wanted.issubset(variant))
 
 
 def _filter_states(library: EffectLibrary, names: Iterable[str]) -> Iterator[FilterState]:

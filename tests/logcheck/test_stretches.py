@@ -64,7 +64,7 @@ def dense_log(n: int, period_s: float) -> RunLog:
 
 
 def test_rows_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_seen() -> None:
-    n, period_s, factor = 500_000, 60e-6, 66  # 66 of 60 us are 3.96 ms, 67 were more than 4 ms
+    n, period_s, factor = 500_000, 60e-6, 125  # by 166 rows were 10 ms apart, by 125 8000 readings are left
     dense, mask = dense_log(n, period_s), np.arange(n) % 3 > 0
     found = stretches([dense, log_of(1000)], [mask, all_rows(log_of(1000))], ["dense", "short"], SLOW_RAD_S)
     seen = found.logs[0]
@@ -72,13 +72,13 @@ def test_rows_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_seen()
     assert seen.sample_period_s == pytest.approx(factor * period_s, rel=1e-4)
     rows = np.searchsorted(dense.t_s, seen.t_s)
     blocks = np.arange(0, n, factor)
-    np.testing.assert_array_equal(rows, blocks + (mask[blocks] == 0))  # the first of each 66 that may be used
+    np.testing.assert_array_equal(rows, blocks + (mask[blocks] == 0))  # the first of each 125 that may be used
     assert found.used[0].all()
     np.testing.assert_array_equal(seen.y, dense.y[rows])
     assert seen.u[7] == pytest.approx(0.1 * dense.y[rows[7] : rows[8]].mean(axis=0))
     assert seen.seq is None
     assert tuple(note.said for note in found.notes) == (
-        "dense: 7576 of its 500000 rows were looked at, spread evenly, as they are 60 microseconds apart",
+        "dense: 4000 of its 500000 rows were looked at, spread evenly, as they are 60 microseconds apart",
     )
 
 
@@ -89,7 +89,7 @@ def test_a_fast_plant_keeps_ten_rows_of_its_shortest_time_constant() -> None:
 
 
 def test_of_a_recording_and_its_every_second_row_the_same_rows_are_seen() -> None:
-    dense = dense_log(30_000, 1e-3)
+    dense = dense_log(50_000, 1e-3)
     half = replace(
         dense,
         sample_period_s=2e-3,
@@ -112,12 +112,12 @@ def test_of_short_logs_every_row_is_seen_however_dense() -> None:
 def test_a_long_dense_log_is_thinned_to_what_a_plant_needs_and_shown_by_stretches_of_all_of_it() -> None:
     dense = dense_log(3_000_000, 100e-6)
     found = stretches([dense], [all_rows(dense)], ["dense"], SLOW_RAD_S)
-    # 12 500 rows of 4 ms are 50 s, which is five stretches of ten seconds and more.
-    assert len(found.logs) == 5
-    assert [log.sample_period_s for log in found.logs] == pytest.approx([0.004] * 5, rel=1e-4)
+    # 12 500 rows of 10 ms are 125 s, which is eight stretches of more than ten seconds.
+    assert len(found.logs) == 8
+    assert [log.sample_period_s for log in found.logs] == pytest.approx([0.01] * 8, rel=1e-4)
     assert found.logs[0].t_s[0] == 0.0
     assert found.logs[-1].t_s[-1] == pytest.approx(dense.t_s[-1], abs=0.02)
-    assert "as 5 stretches" in str(found.notes[1].said)
+    assert "as 8 stretches" in str(found.notes[1].said)
 
 
 def test_a_log_with_an_output_that_was_never_measured_is_cut_without_warnings(recwarn: pytest.WarningsRecorder) -> None:

@@ -108,7 +108,7 @@ def test_what_was_announced_is_there_when_the_process_ends(tmp_path: Path) -> No
     assert not [path for path in (tmp_path / "host").iterdir() if path.is_dir()]
 
 
-def test_of_three_variants_the_narrowest_is_taken() -> None:
+def test_of_the_variants_the_narrowest_is_taken() -> None:
     library = effect_library(arm())
     noises = set(library.noises)
     assert library.compiled(["theta_sensor.delay"]).names == noises
@@ -119,6 +119,14 @@ def test_of_three_variants_the_narrowest_is_taken() -> None:
         [library.names[0], library.wide_names[0]],
     ):
         assert library.compiled(wanted).names == {*library.whole, *noises}
+
+
+def test_axes_that_yield_have_a_variant_without_the_other_effects_that_bring_states(plant: BoundPlant) -> None:
+    library = effect_library(plant)
+    assert set(library.bristles) == {"elevation.bristles", "azimuth.bristles"}
+    yielding = library.carrying(["azimuth.bristles", library.narrow[0]])
+    assert set(yielding) == {*library.narrow, *library.bristles}
+    assert library.carrying(["azimuth.bristles", library.wide_names[0]]) == library.whole
 
 
 def test_what_no_filter_follows_is_in_none_and_is_no_candidate(plant: BoundPlant) -> None:
