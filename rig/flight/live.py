@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from records.logs.live import LiveRow
-from rig.emulator.ports.serial_port import EmulatedSerial
+from rig.emulator.serial_port import EmulatedSerial
 from rig.link.client import BoardClient
 from rig.link.replies import Health
 from sim.runs.stepped import SteppedPlant

@@ -8,7 +8,7 @@ from records.logs.live import LiveRow
 from records.loops import LOOPS, Loop, Pins
 from records.protocol import PROTOCOL
 from rig.emulator.board import EmulatedBoard
-from rig.emulator.ports.serial_port import EmulatedSerial
+from rig.emulator.serial_port import EmulatedSerial
 from rig.flight.live import Angles, BoardTime
 from rig.link.client import BoardClient
 from rig.link.replies import Health, Telemetry, state_name

@@ -11,7 +11,7 @@ import serial
 
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig.emulator.ports.serial_port import register_emulated_ports
+from rig.emulator.serial_port import register_emulated_ports
 
 _OUTPUT_SPEED = 5  # of what termios tells
 # What a lock and a driver answer where a port is open already.

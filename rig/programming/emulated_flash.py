@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rig.emulator.ports.pty_port import PtyBootLoader
+from rig.emulator.pty_port import PtyBootLoader
 from rig.link.client import asked_identity
 from rig.link.replies import Identity
 from rig.programming.flash import flash_through_boot_loader

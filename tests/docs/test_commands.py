@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from recordings.datasets.files import datasets_folder
-from rig.emulator.ports.pty_port import PtyBoard
+from rig.emulator.pty_port import PtyBoard
 from tests.docs.commands import PAGES, calls, checkout, commands, fenced, indented, mentions
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR

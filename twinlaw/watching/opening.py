@@ -10,7 +10,7 @@ from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import load_log, plant_of_log
 from records.protocol import protocol_of
-from rig.emulator.ports.serial_port import EmulatedSerial
+from rig.emulator.serial_port import EmulatedSerial
 from rig.flight.live import LiveFlight, LoopFlight, time_of
 from rig.flight.live_flying import EmulatedRig, FlyingFlight, RealRig
 from rig.link.client import DEFAULT_TIMEOUT_S, BoardClient, demand_pins

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from records.board import STM32G071
-from rig.emulator.ports.boot_loader import ACK, NACK, SYNCHRONISE, BootLoader, Command, LoaderFaults
+from rig.emulator.boot_loader import ACK, NACK, SYNCHRONISE, BootLoader, Command, LoaderFaults
 
 FLASH, RAM = STM32G071.flash, STM32G071.ram
 PAGE_BYTES = STM32G071.flash_page_bytes

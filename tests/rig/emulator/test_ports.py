@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 import serial
 
-from rig.emulator.ports.pty_port import PtyBoard
-from rig.emulator.ports.serial_port import EmulatedSerial, register_emulated_ports
+from rig.emulator.pty_port import PtyBoard
+from rig.emulator.serial_port import EmulatedSerial, register_emulated_ports
 from tests.rig.emulator.programs import build
 from tests.rig.emulator.test_uart import ECHO, HOST_BYTE_S, START
 

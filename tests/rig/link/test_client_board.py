@@ -9,7 +9,7 @@ import pytest
 from codegen.law import generate_law
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig.emulator.ports.pty_port import PtyBoard
+from rig.emulator.pty_port import PtyBoard
 from rig.flight.controller import BoardController
 from rig.link.client import BoardClient
 from rig.link.numbers import Float32Numbers

@@ -12,8 +12,8 @@ import pytest
 from codegen.law import generate_law
 from records.board import STM32G071
 from records.errors import BadInput, VerificationFailed
-from rig.emulator.ports.boot_loader import Command, LoaderFaults
-from rig.emulator.ports.pty_port import PtyBootLoader
+from rig.emulator.boot_loader import Command, LoaderFaults
+from rig.emulator.pty_port import PtyBootLoader
 from rig.link.client import BoardClient, asked_identity
 from rig.link.numbers import numbers_of
 from rig.link.port import open_port

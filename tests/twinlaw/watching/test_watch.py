@@ -18,7 +18,7 @@ import pytest
 
 from diagnosis.validate.ahead import Lookahead
 from records.log import load_log, save_log
-from rig.emulator.ports.pty_port import PtyBoard
+from rig.emulator.pty_port import PtyBoard
 from rig.link.client import BoardClient
 from sim.columns import log_columns
 from sim.plants import MODELS

@@ -14,11 +14,11 @@ from typing import Self
 from records.errors import BadInput
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
+from rig.emulator.boot_loader import BootLoader, LoaderFaults
 from rig.emulator.image import Image
 from rig.emulator.native import library
-from rig.emulator.ports.boot_loader import BootLoader, LoaderFaults
-from rig.emulator.ports.terminal import Terminal
 from rig.emulator.stops import Stop
+from rig.emulator.terminal import Terminal
 
 SLICE_S = 0.001  # how long the board may lag behind the wall clock
 LONGEST_LEAP_S = 0.05  # after a pause of the computer the board goes on from where it was

@@ -20,8 +20,8 @@ PATIENCE_S = 1.0  # a read without timeout goes on in slices of this length
 
 def register_emulated_ports() -> None:
     """Make `serial.serial_for_url("emulated://PATH")` known to pyserial; calling it again changes nothing."""
-    if "rig.emulator.ports" not in serial.protocol_handler_packages:
-        serial.protocol_handler_packages.append("rig.emulator.ports")
+    if "rig.emulator" not in serial.protocol_handler_packages:
+        serial.protocol_handler_packages.append("rig.emulator")
 
 
 class EmulatedSerial(serial.SerialBase):  # type: ignore[misc]
