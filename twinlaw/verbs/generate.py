@@ -6,13 +6,11 @@ one image, and --as lays the files out as a library for another build system, wi
 
 import argparse
 import json
-from pathlib import Path
 
 from codegen.library import KINDS
 from controllers import loading
-from records.law_table import FlownTable
 from twinlaw.cli import options
-from twinlaw.workflows.chain.building import generate_elsewhere, generate_sources
+from twinlaw.workflows.chain.building import generate_elsewhere
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,17 +26,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Generate, write and name the files."""
     table = loading.load(chosen.table)[1]
-    files = _files(table, chosen)
+    folder = chosen.out / (chosen.kind or "generated")
+    files = generate_elsewhere(table, chosen.arithmetic, folder, chosen.prefix, chosen.kind)
     if chosen.json:
         print(json.dumps({"table_digest": table.digest, "files": [str(path) for path in files]}))
     else:
         for path in files:
             print(f"{path}  {len(path.read_text(encoding='utf-8').splitlines())} lines")
     return 0
-
-
-def _files(table: FlownTable, chosen: argparse.Namespace) -> list[Path]:
-    folder = chosen.out / (chosen.kind or "generated")
-    if chosen.prefix or chosen.kind:
-        return generate_elsewhere(table, chosen.arithmetic, folder, chosen.prefix, chosen.kind)
-    return [folder / name for name in sorted(generate_sources(table, chosen.arithmetic, folder))]

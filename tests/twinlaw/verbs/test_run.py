@@ -17,7 +17,7 @@ from recordings.datasets.files import datasets_folder
 from records.log import RunLog, load_log, save_log
 from records.loops import LOOPS
 from records.table import ControllerTable, load_table
-from rig.emulator.ports.serial_port import EmulatedSerial
+from rig.emulator.serial_port import EmulatedSerial
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.manoeuvres import hop
@@ -291,6 +291,15 @@ def test_nothing_is_shown_while_it_works_in_a_pipe(
 ) -> None:
     assert main(["generate", "--table", str(out / "controller.json"), "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().err == ""
+
+
+def test_generate_names_every_file_that_it_writes(
+    out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Truth: what stands in the folder afterwards, law and protocol."""
+    assert main(["generate", "--table", str(out / "controller.json"), "--out", str(tmp_path), "--json"]) == 0
+    named = json.loads(capsys.readouterr().out)["files"]
+    assert named == sorted(str(path) for path in (tmp_path / "generated").iterdir())
 
 
 def test_help_names_the_verbs_in_the_order_of_the_work(capsys: pytest.CaptureFixture[str]) -> None:

@@ -47,7 +47,7 @@ def demand_helicopter_loops(table: FlownTable, what: str) -> None:
 
 
 def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix: str, kind: str | None) -> list[Path]:
-    """Law and protocol for firmware of another hand, in `folder`: their names behind a prefix, laid out as a library where a kind is given.
+    """Law and protocol for firmware of another hand, in `folder`: names behind `prefix` if any, as a library where `kind` is given.
 
     Returns the files. Raises BadInput for a prefix that cannot begin a name in C.
     """
