@@ -80,6 +80,11 @@ def said(name: str, value: float) -> str:
     return f"{value:.4g} {unit_of(name)}".rstrip()
 
 
+def digits(value: float) -> str:
+    """A number as a table shows it: two decimals, and three digits at least."""
+    return f"{value:.2f}" if abs(value) >= 1.0 else f"{value:#.3g}"
+
+
 def shown(name: str) -> tuple[str, float]:
     """The unit in which a person reads a column, degrees for an angle, and what one of its own is in that."""
     return ("deg", math.degrees(1.0)) if unit_suffix(name) == "rad" else (unit_of(name) or "1", 1.0)

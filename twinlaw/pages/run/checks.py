@@ -1,6 +1,7 @@
 """What was checked as rows of text: a verification, a board's validation, and the memory that an image takes."""
 
 from records.board import STM32G071, Board
+from records.text.units import digits
 from records.verification import Validation, Verification
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Row
@@ -44,7 +45,7 @@ def verification_rows(verification: Verification) -> list[Row]:
     rows += [
         (
             f"{row.axis} poles after fit and rounding",
-            f"{row.designed_slowest_rad_s:.2f} -> {row.worst_slowest_rad_s:.2f} rad/s{f' at {row.at}' if row.at else ''}",
+            f"{digits(row.designed_slowest_rad_s)} -> {digits(row.worst_slowest_rad_s)} rad/s{f' at {row.at}' if row.at else ''}",
             _held(row.stable),
         )
         for row in verification.poles

@@ -6,7 +6,7 @@ from typing import Any
 
 from design.analysis.migration import SlowestPole
 from design.report import AxisReport, DesignReport
-from records.text.units import said, unit_of
+from records.text.units import digits, said, unit_of
 from records.verification import at_own_schedule
 from twinlaw.pages.page import Row
 
@@ -49,7 +49,7 @@ def design_rows(report: DesignReport) -> list[Row]:
         f"{whose}, coupled",
         "",
         "",
-        f"{report.coupled.worst_rad_s:.2f} rad/s",
+        f"{digits(report.coupled.worst_rad_s)} rad/s",
         _where(report, report.coupled.at_psi_rad),
     )
     return [*rows, (*coupled, *[""] * (len(_DESIGN_HEADING) - len(coupled)))]
@@ -59,9 +59,9 @@ def _design_row(report: DesignReport, axis: AxisReport) -> Row:
     worst = axis.worst_margins
     return (
         axis.axis,
-        f"{axis.designed_slowest_rad_s:.2f} rad/s",
-        f"{axis.after_fit.worst_rad_s:.2f} rad/s",
-        f"{axis.after_rounding.worst_rad_s:.2f} rad/s",
+        f"{digits(axis.designed_slowest_rad_s)} rad/s",
+        f"{digits(axis.after_fit.worst_rad_s)} rad/s",
+        f"{digits(axis.after_rounding.worst_rad_s)} rad/s",
         _where(report, axis.after_rounding.at_psi_rad),
         f"{worst.sensitivity:.2f}",
         degrees(worst.phase_rad),
