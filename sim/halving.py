@@ -1,5 +1,6 @@
 """How large the error of the integration step is, found by halving it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,12 +41,18 @@ def step_error(
     the error of the integration behind the encoder's step. An unstable plant with given inputs amplifies every error: check
     it in the loop, or over short times.
     """
+
+    def run(count: int) -> Array:
+        y = simulate(bound, t_s, x0, drive, reference=reference, resolution=exact, substeps=count, keep="y").y
+        assert y is not None
+        return y
+
     exact = np.zeros(len(bound.model.outputs))
-    coarse, fine = (
-        simulate(bound, t_s, x0, drive, reference=reference, resolution=exact, substeps=count, keep="y").y
-        for count in (substeps, 2 * substeps)
-    )
-    assert coarse is not None
-    assert fine is not None
+    return halved(run, substeps)
+
+
+def halved(run: Callable[[int], Array], substeps: int) -> StepError:
+    """The same check of any run that gives outputs (.., n, outputs) for a number of steps a sample."""
+    coarse, fine = run(substeps), run(2 * substeps)
     difference = np.max(np.abs(coarse - fine), axis=tuple(range(coarse.ndim - 1)))
     return StepError(substeps, difference, difference * 2**ORDER / (2**ORDER - 1))

@@ -10,10 +10,11 @@ from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import DOUBLE, RunLog
 from records.loops import LOOPS, Loop
+from records.quality import STEP_ERROR
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.columns import log_columns, reference_name
-from sim.halving import StepError, step_error
+from sim.halving import StepError, halved, step_error
 from sim.kernel.law import is_kernel_s
 from sim.loop import Wired, fly, fly_law, steps_a_sample
 from sim.manoeuvres import Manoeuvre, flight, steps, stir
@@ -91,10 +92,25 @@ def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
         substeps, told = steps_a_sample(bound, whole), whole.reference_rad
         if isinstance(table, ControllerTable) and is_kernel_s(table):
             return step_error(bound, whole.t_s, whole.x0, table, reference=told, substeps=substeps)
-        texts, wires = loading.generate(table, "float32"), wiring(bound, table.loops)
-        law = FlownLaw(texts, table.loops, wires)  # must outlive the flights
-        own = law.controller(whole.t_s.size)
-        return step_error(bound, whole.t_s, whole.x0, own, reference=told, substeps=substeps)
+        error = _halved_in_float32(bound, table, whole, substeps)
+        limits = [STEP_ERROR.green * step or np.inf for step in bound.encoder_steps]
+        return error if np.all(error.estimate <= limits) else _halved_in_double(bound, table, whole, substeps)
+
+
+def _halved_in_float32(bound: BoundPlant, table: FlownTable, whole: Manoeuvre, substeps: int) -> StepError:
+    """The check under the law's C, which flies whole flights without Python."""
+    law = FlownLaw(
+        loading.generate(table, "float32"), table.loops, wiring(bound, table.loops)
+    )  # must outlive the flights
+    own = law.controller(whole.t_s.size)
+    return step_error(bound, whole.t_s, whole.x0, own, reference=whole.reference_rad, substeps=substeps)
+
+
+def _halved_in_double(bound: BoundPlant, table: FlownTable, whole: Manoeuvre, substeps: int) -> StepError:
+    """The check under the law in double precision, some seconds: one in float32 may hunt, another way after any change at all."""
+    law = Wired(loading.row_of(table).float_law(table), wiring(bound, table.loops))
+    exact = np.zeros(len(bound.model.outputs))
+    return halved(lambda count: fly(bound, law, whole, substeps=count, resolution=exact).y, substeps)
 
 
 def chain_flight(log: RunLog, loops: Sequence[Loop], counters: Mapping[str, int] | None = None) -> ChainFlight:
