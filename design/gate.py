@@ -4,11 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from design.loop import PlantPolynomials
+from design.obstacles import margin_advice
 from design.report import AxisReport, DesignReport
 from design.settings import DesignSettings, MarginLimits
 from records.errors import BadInput
 
-REMEDY = "choose other poles, more operating points or a higher coefficient_degree"
+MORE = "; or more operating points or a higher coefficient_degree"
 
 # The controller's own poles may reach the unit circle (integral action) but not leave it by more than rounding.
 LARGEST_RADIUS = 1.0 + 1e-9
@@ -36,7 +38,7 @@ def check(report: DesignReport, settings: DesignSettings) -> None:
         _apply(_Rule("slowest pole of all loops together", slowest, 0.0, "rad/s"), report, settings, "all axes")
     for axis in report.axes:
         for rule in _margin_rules(axis, settings.margins):
-            _apply(rule, report, settings, axis.axis)
+            _apply(rule, report, settings, axis.axis, axis.plants)
     if report.coupling:
         _check_coupled_sensitivity(report, settings)
 
@@ -88,17 +90,24 @@ def _margin_rules(axis: AxisReport, limits: MarginLimits) -> tuple[_Rule, ...]:
     )
 
 
-def _apply(rule: _Rule, report: DesignReport, settings: DesignSettings, axis: str) -> None:
+def _apply(
+    rule: _Rule, report: DesignReport, settings: DesignSettings, axis: str, plants: tuple[PlantPolynomials, ...] = ()
+) -> None:
+    """Raises BadInput where the rule does not hold; with the `plants` (angles,) of the axis it says what these leave to be chosen."""
     worst = min(rule.values) if rule.at_least else max(rule.values)
     holds = worst >= rule.limit if rule.at_least else worst < rule.limit
     if holds:
         return
-    psi_rad = float(report.psi_rad[rule.values.index(worst)])
+    index = rule.values.index(worst)
     bound = "at least" if rule.at_least else "below"
+    more = "" if settings.schedule is None else MORE
+    remedy = (
+        margin_advice(plants[index], settings.margins.max_sensitivity, more) if plants else f"choose other poles{more}"
+    )
     raise BadInput(
         rule.what,
-        settings.place(axis, psi_rad),
+        settings.place(axis, float(report.psi_rad[index])),
         f"{worst:.4g} {rule.unit}".strip(),
         f"{bound} {rule.limit:.4g} {rule.unit}".strip(),
-        "choose other poles" if settings.schedule is None else REMEDY,
+        remedy,
     )

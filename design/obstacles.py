@@ -52,6 +52,34 @@ def advice(plant: PlantPolynomials, integrates: bool) -> str:
     )
 
 
+def margin_advice(plant: PlantPolynomials, most_sensitivity: float, beside_poles: str = "") -> str:
+    """What to do about a plant whose loop has too little margin, in words: of poles nothing, where its own leave none."""
+    zeros, poles, least = finite_zeros(plant), polynomial_roots(plant.a), least_sensitivity(plant)
+    far = zeros[np.abs(1.0 + zeros) > 1.0 + AT_REST]
+    if least >= most_sensitivity:
+        unstable = poles[np.abs(1.0 + poles) > 1.0 + AT_REST]
+        beside = f" beside zeros at {_said(far, plant.sample_period_s)}" if len(far) else ""
+        return (
+            f"no poles will do: with unstable poles at {_said(unstable, plant.sample_period_s)}{beside} every controller has "
+            f"{least:.3g} or more; measure another output, or make one of several, or sample faster"
+        )
+    shown = zeros[(zeros.real > -1.0)]
+    and_zeros = f", its zeros at {_said(shown, plant.sample_period_s)}" if len(shown) else ""
+    return f"choose other poles: the plant's own are at {_said(poles, plant.sample_period_s)}{and_zeros}{beside_poles}"
+
+
+def least_sensitivity(plant: PlantPolynomials) -> float:
+    """The least that max|S|, S = 1/(1 + L), can be under any controller: 1 without an unstable pole.
+
+    At a zero z_0 outside the unit circle S is 1, at poles p outside it 0: by the maximum principle |S| reaches
+    prod |(1 - p* z_0) / (z_0 - p)|, and prod |p| for the zero at infinity.
+    """
+    zeros, poles = 1.0 + finite_zeros(plant), 1.0 + polynomial_roots(plant.a)
+    far, unstable = (z[np.abs(z) > 1.0 + AT_REST] for z in (zeros, poles))
+    each = [np.prod(np.abs((1.0 - unstable.conj() * zero) / (zero - unstable))) for zero in far]
+    return float(max([np.prod(np.abs(unstable)), *each]))
+
+
 def finite_zeros(plant: PlantPolynomials) -> NDArray[np.complex128]:
     """The finite zeros, as gamma: leading coefficients that are rounding, or nothing, are no zeros."""
     sizes = np.abs(plant.b) * np.max(np.abs(polynomial_roots(plant.a))) ** np.arange(len(plant.b))

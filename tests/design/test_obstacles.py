@@ -9,7 +9,7 @@ import pytest
 from design.discretise import sample
 from design.linear_plant import LinearPlant
 from design.loop import plant_polynomials
-from design.obstacles import advice
+from design.obstacles import advice, least_sensitivity, margin_advice
 from design.settings import read_settings
 from design.table import design
 from records.errors import BadInput
@@ -105,6 +105,19 @@ def test_a_zero_is_told_too_as_a_faster_loop_wants_a_pole_near_it() -> None:
     """Truth: (s + 2)/(s^2 + 10 s + 25); a hold leaves the zero where it is, to 2 %."""
     told = advice(of([[0, 1], [-25, -10]], [0, 1], [2, 1]), integrates=True)
     assert float(told.split("its zeros at ")[1].split(" rad/s")[0]) == pytest.approx(-2.0, rel=0.02)
+
+
+@pytest.mark.parametrize(("pole", "zero"), [(3.0, 20.0), (15.0, 21.0), (-5.0, 20.0)])
+def test_no_controller_is_less_sensitive_than_an_unstable_pole_beside_a_zero_allows(pole: float, zero: float) -> None:
+    """Truth: of (z - s)/((s - p)(s + 40)), which is (p + z)/(z - p) while samples are short, to 2 %; 1 of a stable plant."""
+    companion = [[0, 1], [40.0 * pole, pole - 40.0]]
+    least = (pole + zero) / (zero - pole) if pole > 0.0 else 1.0
+    plant = of(companion, [0, 1], [zero, -1], sample_period_s=1e-4)
+    assert least_sensitivity(plant) == pytest.approx(least, rel=0.02)
+    told = margin_advice(plant, most_sensitivity=3.0, beside_poles="; or MORE")
+    beside = f"no poles will do: with unstable poles at {pole:g} rad/s beside zeros at"
+    assert told.startswith(beside if least > 3.0 else f"choose other poles: the plant's own are at {pole:g}, -40 rad/s")
+    assert told.endswith("or sample faster" if least > 3.0 else "; or MORE")
 
 
 def reels(folder: Path, poles_rad_s: list[int], own: OwnPlant = REELS) -> Any:
