@@ -417,3 +417,40 @@ REFUSED: Mapping[str, tuple[OwnPlant, str]] = {
     "stops_exchanged": (_with("torque, 0, None, None", "torque, 0, 1.0, -1.0"), "got 1 below and -1 above"),
     "level_alone": (LEVEL_ALONE, "no axis beside it that gravity turns"),
 }
+
+# A quarter of a car: neither of its two positions is an output, their difference is.
+SUSPENSION = OwnPlant(
+    {
+        "m_s": (300.0, 10.0, "kg"),
+        "m_u": (40.0, 2.0, "kg"),
+        "k_s": (16e3, 500.0, "N m^-1"),
+        "c_s": (1000.0, 100.0, "N s m^-1"),
+        "k_t": (190e3, 9e3, "N m^-1"),
+        "c_t": (100.0, 50.0, "N s m^-1"),
+        "F_max": (1500.0, 0.0, "N"),
+    },
+    {"travel_m": 1e-5},
+    """
+Z, V, W, D = symbol("z_m"), symbol("z_dot_m_s"), symbol("w_m"), symbol("w_dot_m_s")
+F = symbol("F_N")
+spring = p["k_s"] * (Z - W) + p["c_s"] * (V - D)
+return Model(
+    name="NAME",
+    states=(Z, V, W, D),
+    inputs=(F,),
+    outputs={"travel_m": Z - W},
+    parameters=PARAMETERS,
+    rates={Z: V, W: D},
+    axes=(
+        Axis("body", Z, V, p["m_s"], F - spring, 0, None, None),
+        Axis("wheel", W, D, p["m_u"], spring - F - p["k_t"] * W - p["c_t"] * D, 0, None, None),
+    ),
+    input_limits={F: (-p["F_max"], p["F_max"])},
+    places=Places(
+        inputs={"actuator": InputPlace(F, "N", 1000.0)},
+        axes={"body": AxisPlace("z_m", "N", 500.0), "wheel": AxisPlace("w_m", "N", 500.0)},
+        sensors={"sensor": SensorPlace("travel_m", "m", 0.1)},
+    ),
+)
+""",
+)

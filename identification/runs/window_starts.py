@@ -52,6 +52,8 @@ def window_starts(
         if position not in measured:
             place = names.index(str(position))
             x0[:, place], sd[:, place] = _anywhere(bound, axis)
+            if axis.velocity not in measured:
+                sd[:, names.index(str(axis.velocity))] = _any_speed(bound, axis)
     known = {*measured, *axes, *(axis.velocity for axis in model.axes)}
     inner = [place for place, state in enumerate(model.states) if state not in known and str(state) not in driven]
     if inner:
@@ -86,6 +88,12 @@ def _anywhere(bound: BoundPlant, axis: Axis) -> tuple[float, float]:
         return 0.0, ANYWHERE
     lower, upper = bound.number(axis.lower), bound.number(axis.upper)
     return (lower + upper) / 2.0, (upper - lower) / np.sqrt(12.0)
+
+
+def _any_speed(bound: BoundPlant, axis: Axis) -> float:
+    """Standard deviation of the velocity of an axis that no output shows alone: what is usual for it."""
+    place = bound.model.places.axes.get(axis.name)
+    return place.speed_size if place else ANYWHERE
 
 
 def position_sd(y: Array, step: float) -> float:
