@@ -119,8 +119,17 @@ def identification(
     stated = numbers(plant)
     factors = interval_factors(stage for _, stage in stages)
     began = _begun(stages) if begun is None else begun
+    loose = _loose_sds(stages, belief)
     estimates = tuple(
-        _estimated(name, began[name], stated[name], belief, factors.get(name, NORMAL), (signs or {}).get(name, "any"))
+        _estimated(
+            name,
+            began[name],
+            stated[name],
+            belief,
+            factors.get(name, NORMAL),
+            (signs or {}).get(name, "any"),
+            loose[name],
+        )
         for name in belief.names
     )
     found = tuple(_aid(name, began[name], part, interval_factor(dof)) for part, dof in aids for name in part.names)
@@ -131,6 +140,16 @@ def identification(
 def _begun(stages: Sequence[tuple[str, Estimate]]) -> dict[str, float]:
     """Where the first fit of each coefficient started, by name."""
     return {name: value for _, stage in reversed(stages) for name, value in stage.start.items()}
+
+
+def _loose_sds(stages: Sequence[tuple[str, Estimate]], belief: Belief) -> dict[str, float]:
+    """The sd of each were it not held by its own size, by the stage that it belongs to, less what later ones told of it."""
+    final = dict(zip(belief.names, belief.sd.tolist(), strict=True))
+    loose = dict(final)
+    for _, stage in stages:
+        for name in final.keys() & set(stage.own) & stage.loose_sd.keys():
+            loose[name] = stage.loose_sd[name] * final[name] / float(stage.belief.sd[stage.belief.names.index(name)])
+    return loose
 
 
 def signs_of(model: Model) -> dict[str, str]:
@@ -152,15 +171,18 @@ def interval(value: float, reach: float, sign: str = "any") -> tuple[float, floa
 
 
 def _estimated(
-    name: str, start: float, stated: tuple[float, float, str], belief: Belief, factor: float, sign: str
+    name: str, start: float, stated: tuple[float, float, str], belief: Belief, factor: float, sign: str, loose_sd: float
 ) -> Estimated:
-    """`stated` are value, sd and unit of the plant file; what it states as 0 has no size by which to be called poor."""
+    """`stated` are value, sd and unit of the plant file; what it states as 0 has no size by which to be called poor.
+
+    `loose_sd` is the sd had it not been given a size.
+    """
     before, before_sd, unit = stated
     value, sd = _told(name, belief)
-    told = factor * sd < FARTHEST * max(abs(before), abs(value), before_sd) or before == 0.0
+    told = factor * max(sd, loose_sd) < FARTHEST * max(abs(before), abs(value), before_sd) or before == 0.0
     kept, kept_sd, reach = (value, sd, factor) if told else (before, before_sd, NORMAL)
     lower, upper = interval(kept, reach * kept_sd, sign)
-    return Estimated(name, unit, start, kept, kept_sd, lower, upper, told, value, sd)
+    return Estimated(name, unit, start, kept, kept_sd, lower, upper, told, value, sd if told else max(sd, loose_sd))
 
 
 def _aid(name: str, start: float, belief: Belief, factor: float) -> Estimated:

@@ -1,7 +1,7 @@
 """One stage of identification: fit, weigh the readings by what they turn out to be worth, state how far the result may be off."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from identification.uncertainty.residuals import ResidualTest, tests_at
 from records.errors import BadInput
 
 Array = NDArray[np.float64]
+LOOSER = 10.0  # than a parameter's size: what the data tell is no less certain for it
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +33,8 @@ class Estimate:
     """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests.
 
     `at_bound` names parameters that ended at a bound of their range: the data pull them further, and their intervals mean little.
-    `discords` name those in which runs that were fitted together contradict one another. `start` is where the fit began, by name, and
-    `growth` how far slopes grew within a window.
+    `discords` name those in which runs that were fitted together contradict one another. `start` is where the fit began, by name,
+    `growth` how far slopes grew within a window, and `loose_sd` the sd of each had those of `own` been held `LOOSER` times as loosely.
     """
 
     belief: Belief
@@ -50,6 +51,7 @@ class Estimate:
     searched: tuple[Searched, ...] = ()
     discords: tuple[Discord, ...] = ()
     growth: float = 1.0
+    loose_sd: Mapping[str, float] = field(default_factory=dict)
 
 
 def interval_factor(dof: float) -> float:
@@ -130,7 +132,15 @@ def _estimate(
         searched=searched,
         discords=discords(problem, point),
         growth=growth(point),
+        loose_sd=_loose_sd(problem, point, before),
     )
+
+
+def _loose_sd(problem: Problem, point: Point, before: Belief) -> dict[str, float]:
+    """The sd by name with the weak prior `LOOSER` times as wide: of a direction that many share each holds so little that it looks told."""
+    given = (1.0 - LOOSER**-2) * np.diag(_weak(problem, before))
+    sd = np.sqrt(np.diag(inverse(point.H + problem.prior.information - given)))
+    return dict(zip(problem.names, sd.tolist(), strict=True))
 
 
 def _unseen(problem: Problem, point: Point, own: tuple[str, ...], before: Belief) -> tuple[Direction, ...]:
