@@ -1,6 +1,6 @@
 """Tell what is installed, what is missing, and which verb misses it.
 
-Exit status 1 where something is missing that every verb needs.
+Exit status 2 where something is missing that every verb needs, as of any verb that misses it.
 """
 
 import argparse
@@ -15,7 +15,7 @@ from importlib.metadata import PackageNotFoundError, metadata, requires, version
 from pathlib import Path
 from typing import Any
 
-from records.errors import BadInput, VerificationFailed
+from records.errors import BadInput
 from toolchain.cache import CACHE_DIR
 from twinlaw.cli import console, options
 
@@ -66,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Look, print, and fail where nothing would work."""
+    """Look, print, and refuse where nothing would work."""
     findings = list(examine())
     if chosen.json:
         print(json.dumps([asdict(finding) for finding in findings]))
@@ -74,9 +74,18 @@ def run(chosen: argparse.Namespace) -> int:
         rows = [(f.name, f.found or "missing", f.needed_for, "" if f.found else f.remedy) for f in findings]
         print(console.table(rows, ("what", "found", "needed for", "how to get it")))
     lacking = [finding for finding in findings if finding.needed_for == NEEDED and not finding.found]
-    if lacking:
-        raise VerificationFailed("; ".join(f"{finding.name} is missing: {finding.remedy}" for finding in lacking))
-    return 0
+    if not lacking:
+        return 0
+    names, remedies = ([getattr(finding, key) for finding in lacking] for key in ("name", "remedy"))
+    refusal = BadInput(
+        "installation",
+        "doctor",
+        f"no {', no '.join(names)}",
+        f"what {NEEDED} needs",
+        "; ".join(dict.fromkeys(remedies)),
+    )
+    console.fail(str(refusal))
+    return 2
 
 
 def examine() -> Iterator[Finding]:

@@ -54,7 +54,7 @@ def test_a_package_that_cannot_be_imported_does_not_stop_the_verb_that_tells_of_
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
     assert "Traceback" not in done.stderr
     assert "stm32flash" in done.stdout
-    assert done.returncode == (1 if package == "cffi" else 0)
+    assert done.returncode == (2 if package == "cffi" else 0)
 
 
 def test_a_compiler_that_cannot_compile_is_said_and_fails(
@@ -62,5 +62,10 @@ def test_a_compiler_that_cannot_compile_is_said_and_fails(
 ) -> None:
     monkeypatch.setattr(host, "CACHE_DIR", tmp_path)
     monkeypatch.setattr(host, "_zig", lambda: ("/bin/false",))
-    assert main(["doctor"]) == 1
-    assert "C compiler is missing" in capsys.readouterr().err
+    assert main(["doctor", "--json"]) == 2  # as of any other verb: no verification has failed
+    shown = capsys.readouterr()
+    assert shown.err.startswith(
+        "twinlaw: error: doctor: installation: got no C compiler, expected what every verb needs; make run"
+    )
+    assert len(shown.err.splitlines()) == 1
+    assert next(entry for entry in json.loads(shown.out) if entry["name"] == "C compiler")["found"] is None
