@@ -157,9 +157,18 @@ def signals(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(f"--{line}", choices=("on", "off"), help=text)
 
 
+def is_log(port: str) -> bool:
+    """Whether a --port names a log: a file, or what ends as one."""
+    return Path(port).is_file() or port.endswith(".csv")
+
+
 def modem_lines(chosen: argparse.Namespace) -> "ModemLines":
-    """What --dtr and --rts ask for."""
+    """What --dtr and --rts ask for; raises BadInput where --port has no such lines."""
     from rig.link.port import ModemLines  # with pyserial, which most verbs do without
 
+    given = [f"--{line}" for line in ("dtr", "rts") if getattr(chosen, line) is not None]
+    if given and (chosen.port.startswith("emulated") or is_log(chosen.port)):
+        expected, remedy = "a serial port, which has these lines", f"leave {' and '.join(given)} out, or give --port"
+        raise BadInput(" and ".join(given), "command line", f"--port {chosen.port}", expected, remedy)
     asked = {None: None, "on": True, "off": False}
     return ModemLines(asked[chosen.dtr], asked[chosen.rts])

@@ -35,10 +35,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Ask, replay, fly, write, and fail where a check does not hold."""
+    lines = options.modem_lines(chosen)
     bound, table = load_bound(chosen.plant), loading.load(chosen.table)[1]
     wiring(bound, table.loops)  # now, and not after the steps that come before the flight
     url = board_url(chosen.port, chosen.out / "firmware.elf")
-    with connected(table, url, chosen.arithmetic, options.modem_lines(chosen)) as client:
+    with connected(table, url, chosen.arithmetic, lines) as client:
         validation = validate_board(client, table, chosen.port, chosen.steps)
         text = validation_text(validation)
         if not validation.passed:

@@ -62,3 +62,20 @@ def test_two_logs_of_one_name_are_refused_before_either_is_lost(
     for words in (paths, [paths[0], "--holdout", paths[1]]):
         assert main(["identify", "--out", str(tmp_path / "out"), *map(str, words)]) == 2
         assert "log: logs: got two of this name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["validate", "--dtr", "off"],
+        ["watch", "--rts", "on"],
+        ["watch", "--port", "flight.csv", "--dtr", "on"],
+        ["validate", "--port", "emulated://firmware.elf", "--rts", "off"],
+    ],
+)
+def test_a_line_is_not_set_of_what_has_none(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """Truth: an emulated board and a log have neither DTR nor RTS."""
+    assert main(words) == 2
+    said = capsys.readouterr().err
+    assert "expected a serial port, which has these lines" in said
+    assert said.count("\n") == 1
