@@ -19,7 +19,7 @@ from records.verification import verification_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import verification_rows
 from twinlaw.workflows.chain.building import build_image, generate_sources
-from twinlaw.workflows.chain.designing import table_poles
+from twinlaw.workflows.chain.designing import demand_table_of, table_poles
 from twinlaw.workflows.chain.proving import with_proofs
 from twinlaw.workflows.chain.verifying import STEPS, demand, motion_of, recorded_replay, verify_table
 from twinlaw.workflows.reading import load_bound
@@ -52,6 +52,7 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("--all", "verify", "no --proofs", "both, as --all is of the proofs' mutants", "add --proofs")
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
     bound = load_bound(chosen.plant)
+    demand_table_of(bound, table, str(chosen.table))
     recorded = [recorded_replay(path, table, bound, chosen.arithmetic) for path in chosen.log]
     poles = table_poles(bound, table, chosen.arithmetic)
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")

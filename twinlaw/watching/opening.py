@@ -22,10 +22,12 @@ from sim.columns import log_columns
 from sim.manoeuvres import at_rest
 from sim.runs.stepped import SteppedPlant
 from sim.wiring import Wiring, wiring
+from twinlaw.cli.options import is_log
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.replay import LogSource
 from twinlaw.watching.source import Source, signals
 from twinlaw.workflows.chain.boards import board_url
+from twinlaw.workflows.chain.designing import demand_table_of
 from twinlaw.workflows.chain.flying import flight_of
 from twinlaw.workflows.reading import load_bound
 
@@ -42,11 +44,6 @@ class Watched:
     arithmetic: str
     fly: bool
     lines: ModemLines = LEFT_ALONE
-
-
-def is_log(port: str) -> bool:
-    """Whether a --port names a log: a file, or what ends as one."""
-    return Path(port).is_file() or port.endswith(".csv")
 
 
 def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
@@ -70,9 +67,7 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
 
 def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
     table = loading.load(asked.table)[1]
-    if table.plant != bound.plant.name:
-        got = f"a table for {table.plant!r}"
-        raise BadInput("controller table", str(asked.table), got, f"one for {bound.plant.name!r}", "give its --plant")
+    demand_table_of(bound, table, str(asked.table))
     rig = bound if asked.rig is None else _rig(asked.rig, bound)
     wires = wiring(bound, table.loops)
     manoeuvre_rad = flight_of(bound, table).reference_rad[:, wires.outputs]

@@ -228,7 +228,8 @@ def test_a_table_of_another_plant_is_refused(
     plant = tmp_path / "other.toml"
     plant.write_text(PLANT)
     arguments = ["verify", "--plant", str(plant), "--table", str(table_path), "--out", str(tmp_path / "out")]
-    _refused(arguments, ["other", "ce150"], capsys)
+    said = _refused(arguments, ["other", "ce150"], capsys)
+    assert said.startswith(f"twinlaw: error: {table_path}: controller table: got")
 
 
 def test_a_log_of_another_table_is_refused(

@@ -101,13 +101,16 @@ def poles_of(report: DesignReport) -> tuple[PoleMigration, ...]:
     return tuple(PoleMigration(**entry, scheduled_by=column) for entry in report.pole_entries())
 
 
+def demand_table_of(bound: BoundPlant, table: FlownTable, where: str) -> None:
+    """Raise BadInput for a table of another plant; `where` names it."""
+    if table.plant != bound.plant.name:
+        got, expected = f"a table for {table.plant!r}", f"one for {bound.plant.name!r}"
+        raise BadInput("controller table", where, got, expected, "give its plant with --plant")
+
+
 def table_poles(bound: BoundPlant, table: ControllerTable, arithmetic: str = "float32") -> tuple[PoleMigration, ...]:
     """Poles of a table that exists already, flown in `arithmetic` on this plant; raises BadInput when the table is for another plant."""
-    if table.plant != bound.plant.name:
-        what = f"a table for {table.plant!r}"
-        raise BadInput(
-            "controller table", table.digest[:16], what, f"one for {bound.plant.name!r}", "give its plant with --plant"
-        )
+    demand_table_of(bound, table, table.digest[:16])
     with stage("closing the loop at all angles"):
         settings = read_settings(bound)
         entries = poles_on(bound, settings, table, ARITHMETICS[arithmetic].rounding)
