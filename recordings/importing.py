@@ -17,7 +17,7 @@ from recordings.mapping.names import Ambiguous
 from recordings.mapping.source import Source, source
 from recordings.mapping.times import TIME
 from recordings.proposal import proposed
-from recordings.signals import Contents, listed
+from recordings.signals import Contents, Signal, listed
 from records.errors import BadInput
 from records.log import LOOPS, LogColumns, RunLog, facts_of_sidecar
 from records.logs.clock import finer_unit
@@ -155,7 +155,15 @@ def _named(name: str, of: Source) -> str:
     """A signal with what the file calls it, where that is another name, and its unit."""
     signal, last = of.signals[name], name.rpartition(".")[2]
     heading = f" ({signal.heading})" if signal.heading and last not in signal.heading else ""
-    return f"{name}{heading}{f' [{signal.unit}]' if signal.unit else ''}"
+    return f"{name}{_across(signal)}{heading}{f' [{signal.unit}]' if signal.unit else ''}"
+
+
+def _across(signal: Signal) -> str:
+    """Behind the name of a matrix how many vectors it holds, as a mapping counts them: (:,1..3) or (1..3,:)."""
+    if signal.values.ndim != 2:
+        return ""
+    rows, columns = signal.values.shape
+    return f"(1..{rows},:)" if rows < columns else f"(:,1..{columns})"
 
 
 def _time(mapping: ColumnMapping) -> dict[str, str]:

@@ -37,7 +37,7 @@ _CLOCK = re.compile(
 )
 _BASIC = re.compile(r"\d{8}T(\d{2})(\d{2})(\d{2}(?:[.,]\d+)?)()(?:Z|([+-]\d{2}):?(\d{2}))?")  # ISO 8601 without signs
 _MINUTES = re.compile(r"()(\d{1,3}):(\d{2}[.,]\d+)()()()")  # 58:01.5, as spreadsheets show an hour's times
-_WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?) ?([^\d\s.,eE+-]\S*)")
+_WITH_UNIT = re.compile(r"([+-]?[\d.,'’ ]*[\d.,](?:[eE][+-]?\d+)?) ?([^\d\s.,eE+-]\S*)")
 DAY_S = 86400.0
 
 
@@ -85,11 +85,12 @@ def without_groups(cell: str, decimal: str) -> str:
 
 
 def number_and_unit(cell: str, decimal: str) -> tuple[str, str] | None:
-    """The number of a cell such as `4.9 V` or `-45°` as it stands there, and its known unit; None for any other text."""
+    """The number of a cell such as `4.9 V` or `1,234.5 mV`, its thousands together, and its known unit; None for any other text."""
     match = _WITH_UNIT.fullmatch(cell)
-    if match is None or known(match[2]) is None or not _NUMBER[decimal].fullmatch(match[1]):
+    if match is None or known(match[2]) is None:
         return None
-    return match[1], match[2]
+    text = without_groups(match[1], decimal) if is_grouped(match[1], decimal) else match[1]
+    return (text, match[2]) if _NUMBER[decimal].fullmatch(text) else None
 
 
 def time_of_day_s(cell: str) -> float | None:

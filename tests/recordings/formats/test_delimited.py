@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from recordings.formats.text.cells import number_and_unit
 from recordings.formats.text.delimited import read
 from recordings.layout import TextLayout
 from records.errors import BadInput
@@ -213,3 +214,21 @@ def test_a_file_that_is_no_table_is_refused_with_what_it_begins_with(
         (tmp_path / "log.csv").write_bytes(content)
     with pytest.raises(BadInput, match=told):
         read(tmp_path / "log.csv", TextLayout())
+
+
+@pytest.mark.parametrize(
+    ("cell", "decimal", "found"),
+    [
+        ("4.9 V", ".", ("4.9", "V")),
+        ("12 V", ".", ("12", "V")),
+        ("1 234.5 mV", ".", ("1234.5", "mV")),
+        ("-1,234.5 mV", ".", ("-1234.5", "mV")),
+        ("1.234,5mV", ",", ("1234,5", "mV")),
+        ("1,234 V", ".", None),  # a decimal comma as well as thousands
+        ("1 2 V", ".", None),
+    ],
+)
+def test_a_number_with_its_unit_may_have_its_thousands_apart(
+    cell: str, decimal: str, found: tuple[str, str] | None
+) -> None:
+    assert number_and_unit(cell, decimal) == found

@@ -202,3 +202,16 @@ def test_the_label_of_a_scope_s_signal_names_its_values_and_not_its_dimensions(t
     signals = {"values": RUN["psi_rad"].reshape(1, 1, -1), "dimensions": np.array([1, 1]), "label": "psi_rad"}
     path = save_run(tmp_path / "run.mat", psi_rad=None, elevation={"time": T_S, "signals": signals})
     np.testing.assert_array_equal(imported_here(path, ColumnMapping()).log.column("psi_rad"), RUN["psi_rad"])
+
+
+def test_of_several_matrices_it_is_told_how_many_vectors_each_holds(tmp_path: Path) -> None:
+    """Truth: two scopes of two signals each, as Simulink's structure with time has them."""
+    scopes = {
+        name: {"time": T_S, "signals": {"values": np.column_stack([RUN[column] for column in columns])}}
+        for name, columns in (("In", ("u_M_V", "u_T_V")), ("Out", ("psi_rad", "phi_rad")))
+    }
+    savemat(tmp_path / "run.mat", scopes)
+    with pytest.raises(BadInput) as refused:
+        imported_here(tmp_path / "run.mat", ColumnMapping())
+    assert "In.signals.values(:,1..2)" in refused.value.got
+    assert "Out.signals.values(:,1..2)" in refused.value.got
