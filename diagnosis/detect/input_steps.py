@@ -1,25 +1,26 @@
 """Steps of an input seen in the motion: which step's rounding errors the innovations follow."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import sympy
 from numpy.typing import NDArray
+from scipy.linalg import expm
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.filter.filter_input import FilterInput
-from diagnosis.filter.kalman import Disturbances
+from diagnosis.filter.kalman import Disturbances, Pass
 from jobs.thread_map import thread_map
-from sim.model import Model
+from sim.kernel.reference import reference
 from sim.paths.path import counts_held
 
 Array = NDArray[np.float64]
-COUNT = 840  # some 0.5 % apart: 25 steps further a rounding must still fall alike
-SMALLEST, LARGEST = 0.004, 0.25  # of the input's range
+APART = 1.005  # 25 steps further a rounding must still fall alike
+SMALLEST, LARGEST = 0.004, 0.25  # of the input's range; of the part of it that the commands take, where that is less
 STEPS_APART = 1.004
 ROWS = 128  # at once: with all steps side by side they stay in a processor's cache
+MOMENTS = 50  # of a log, of which slopes are taken
 ASKED = 40  # by what they say for the size of their errors; of these what they gain is asked
 
 
@@ -33,10 +34,10 @@ class Kind:
 
 @dataclass(frozen=True, eq=False)
 class _Rounded:
-    """An input on its way: its column, the state that it drives, and what steps may be like."""
+    """An input on its way: its column, what it adds to the plant's states (states,), and what steps may be like."""
 
     column: int
-    target: int
+    push: Array
     kinds: Sequence[Kind]
 
 
@@ -47,11 +48,12 @@ def likely_steps(
     one."""
     model = linearisation.case.library.bound.model
     entry = model.places.inputs[place]
-    target = _target(linearisation, entry.variable)
-    if target is None:
+    column = model.inputs.index(entry.variable)
+    push = _push(linearisation, column)
+    if not (np.isfinite(push).all() and push.any()):
         return []
-    way = _Rounded(model.inputs.index(entry.variable), target, kinds)
-    steps = np.geomspace(SMALLEST, LARGEST, COUNT) * entry.size
+    way = _Rounded(column, push, kinds)
+    steps = _asked_of(linearisation, way.column, entry.size)
     steps = steps[np.argsort(-_promises(linearisation, way, steps))[:ASKED]]
     by_kind = np.array([_gains(linearisation, way, steps, kind) for kind in kinds])
     found: list[tuple[float, Kind]] = []
@@ -62,6 +64,14 @@ def likely_steps(
         if len(found) == decisions.NEXT:
             break
     return found
+
+
+def _asked_of(linearisation: Linearisation, column: int, size: float) -> Array:
+    """The steps (k,) that an input may have: a signal that takes a hundredth of its range may still come in few steps."""
+    u = np.concatenate([filter_input.u[:, column] for filter_input in linearisation.filter_inputs])
+    taken = min(float(np.ptp(u)), size) or size
+    smallest, largest = SMALLEST * taken, min(LARGEST * size, taken)
+    return np.geomspace(smallest, largest, 1 + int(np.log(largest / smallest) / np.log(APART)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +89,7 @@ def _promises(linearisation: Linearisation, way: _Rounded, steps: Array) -> Arra
     them shows, which is much alike for errors that are as good as random. Errors count in steps: a step's size cancels."""
     logs = [
         _sent(filter_input, way.column, pull)
-        for filter_input, pull in zip(linearisation.filter_inputs, linearisation.pulls(way.target), strict=True)
+        for filter_input, pull in zip(linearisation.filter_inputs, linearisation.pulls(way.push), strict=True)
     ]
 
     def by(kind: Kind) -> Array:
@@ -111,7 +121,7 @@ def _sums(log: _Sent, steps: Array, kind: Kind) -> tuple[Array, Array]:
 
 def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, kind: Kind) -> Array:
     errors = [_errors(filter_input, way.column, steps, kind) for filter_input in linearisation.filter_inputs]
-    return linearisation.gains_by(errors, way.target)
+    return linearisation.gains_by(errors, way.push)
 
 
 def _errors(filter_input: FilterInput, column: int, steps: Array, kind: Kind) -> Disturbances:
@@ -126,27 +136,31 @@ def _durations_s(filter_input: FilterInput) -> Array:
     return np.append(np.diff(filter_input.t_s), 0.0)
 
 
-def _target(linearisation: Linearisation, variable: sympy.Symbol) -> int | None:
-    """The state by which an input shows: its rotor's speed, the speed of the axis that it pushes, or of the first that it moves through
-    others, as through a current, which forgets an error before the next row; where it moves no axis, the state that it drives."""
-    library = linearisation.case.library
-    model = library.bound.model
-    for rotor in model.places.rotors.values():
-        if rotor.variable != variable:
-            continue
-        if rotor.drive is not None:
-            return library.states.index(str(rotor.speed))
-        axis = next(iter(rotor.thrusts))
-        return library.states.index(next(str(entry.velocity) for entry in model.axes if entry.name == axis))
-    moved = _moved_by(model, variable)
-    speeds = [state for state in moved if state in [entry.velocity for entry in model.axes]]
-    return next((library.states.index(str(state)) for state in (*speeds, *moved)), None)
+def _push(linearisation: Linearisation, column: int) -> Array:
+    """What a unit of an input adds to the plant's own states (states,) by the end of a row, a second of it:
+
+    (1)  G = 1/h int_0^h e^(A s) ds B
+
+    A and B the slopes of the rates, means along the flights; it shows in each state that it drives, at once or through others.
+    """
+    model, own = linearisation.case.library.bound.model, len(linearisation.case.library.states)
+    A, B = np.zeros((own, own)), np.zeros(own)
+    slopes, p, signs = reference(model), linearisation.case.library.bound.p, np.zeros(len(model.axes))
+    along = [
+        moment for log in zip(linearisation.filter_inputs, linearisation.runs, strict=True) for moment in _moments(*log)
+    ]
+    with np.errstate(all="ignore"):
+        for x, u in along:
+            A += slopes.A(0.0, x[:own], u, p, signs) / len(along)
+            B += slopes.B(0.0, x[:own], u, p, signs)[:, column] / len(along)
+    h_s = float(np.median(np.concatenate([np.diff(filter_input.t_s) for filter_input in linearisation.filter_inputs])))
+    both = np.zeros((own + 1, own + 1))
+    both[:own, :own], both[:own, own] = A, B
+    return np.asarray(expm(both * h_s)[:own, own] / h_s) if np.isfinite(both).all() else np.full(own, np.nan)
 
 
-def _moved_by(model: Model, variable: sympy.Symbol) -> list[sympy.Symbol]:
-    """The states that an input moves, those first that it drives, then those that these drive, and so on."""
-    rates = dict(zip(model.states, model.state_rates(), strict=True))
-    moved: list[sympy.Symbol] = []
-    while further := [s for s in rates if s not in moved and rates[s].free_symbols & {variable, *moved}]:
-        moved += further
-    return moved
+def _moments(filter_input: FilterInput, run: Pass) -> Iterator[tuple[Array, Array]]:
+    """States and inputs at some rows of a log, spread evenly."""
+    rows = np.flatnonzero(filter_input.row >= 0)
+    for instant in rows[:: max(len(rows) // MOMENTS, 1)].tolist():
+        yield run.filtered[filter_input.row[instant]], filter_input.u[instant]

@@ -1,6 +1,6 @@
 """Where score tests are taken from: a fit, what projects its numbers out, and how the filter there answers small disturbances."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -64,25 +64,26 @@ class Linearisation:
 
     def scores_by(self, values: Sequence[Disturbances], target: int) -> Scores:
         """Scores of the answers to disturbances values[flight] (steps, k) of one target, see filter.py."""
-        gram, beside = self._met(values, target, lambda E, part: (E.T @ E, E.T @ part), self._own)
+        gram, beside = self._met(values, {target: 1.0}, lambda E, part: (E.T @ E, E.T @ part), self._own)
         return self.scores(gram, beside[:, :-1].T, beside[:, -1])
 
-    def gains_by(self, values: Sequence[Disturbances], target: int) -> Array:
-        """Gain of the log likelihood (k,) by each of the answers to disturbances alone, in its own direction only."""
+    def gains_by(self, values: Sequence[Disturbances], push: Array) -> Array:
+        """Gain of the log likelihood (k,) by each of the answers to disturbances of the plant's own states, `push` (states,) times the
+        values, alone and in its own direction only."""
+        pushed = {int(state): float(push[state]) for state in np.flatnonzero(push)}
         squares, beside = self._met(
-            values, target, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self._own
+            values, pushed, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self._own
         )
         cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
         norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ self._pull - pull
         return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
 
-    def pulls(self, target: int) -> list[Array]:
-        """E'w by a unit added to one target, a state, over each step of each flight (steps,): for many disturbances at once."""
-        place = self._place(target)
+    def pulls(self, push: Array) -> list[Array]:
+        """E'w by `push` (states,) added to the plant's own states over each step of each flight (steps,): for many disturbances at once."""
 
         def over(filter_input: FilterInput, run: Pass) -> Array:
-            return self.filter.pulls(filter_input, run, self.case.slots)[:, place]
+            return self.filter.pulls(filter_input, run, self.case.slots)[:, : len(push)] @ push
 
         return thread_map(over, self.filter_inputs, self.runs)
 
@@ -94,14 +95,14 @@ class Linearisation:
 
     def steps_against(self, target: int, columns: Array) -> Array:
         """Products (k, m) of the answers to those unit steps with columns (rows, m)."""
-        return self._met(self._unit_steps(target), target, lambda E, part: (E.T @ part,), columns)[0]
+        return self._met(self._unit_steps(target), {target: 1.0}, lambda E, part: (E.T @ part,), columns)[0]
 
     def answer(self, values: Sequence[Disturbances], target: int) -> Array:
         """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target."""
         place = self._place(target)
 
         def over(filter_input: FilterInput, run: Pass, value: Disturbances) -> Array:
-            return self.filter.response(filter_input, run, _of_one(value), [place], self.case.slots)
+            return self.filter.response(filter_input, run, _weighed(value, [1.0]), [place], self.case.slots)
 
         return np.concatenate(
             [found.reshape(-1, found.shape[2]) for found in thread_map(over, self.filter_inputs, self.runs, values)]
@@ -110,18 +111,20 @@ class Linearisation:
     def _met(
         self,
         values: Sequence[Disturbances],
-        target: int,
+        targets: Mapping[int, float],
         terms: Callable[[Array, Array], tuple[Array, ...]],
         columns: Array,
     ) -> tuple[Array, ...]:
         """Sums over all flights and rows of what `terms` makes of the answers (rows, k) and of columns (rows, m), some rows at a time:
-        each a multiple of the answers, so that those not disturbed yet would add nothing."""
-        place, sizes = self._place(target), [run.w.size for run in self.runs]
+        each a multiple of the answers, so that those not disturbed yet would add nothing. Each target is disturbed by so many times the
+        values."""
+        sizes = [run.w.size for run in self.runs]
+        places, weights = [self._place(target) for target in targets], list(targets.values())
 
         def over(filter_input: FilterInput, run: Pass, value: Disturbances, part: Array) -> tuple[Array, ...]:
             sums = terms(np.zeros((0, columns_of(value))), part[:0])
-            for places, E in self.filter.respond(filter_input, run, _of_one(value), [place], self.case.slots):
-                for total, term in zip(sums, terms(E, part[places]), strict=True):
+            for rows, E in self.filter.respond(filter_input, run, _weighed(value, weights), places, self.case.slots):
+                for total, term in zip(sums, terms(E, part[rows]), strict=True):
                     total[tuple(slice(size) for size in term.shape)] += term
             return sums
 
@@ -172,9 +175,9 @@ class Linearisation:
         return np.arange(begin, end, max(apart, whole / decisions.MOST_EVENT_STEPS))
 
 
-def _of_one(values: Disturbances) -> Disturbances:
-    """Disturbances (steps, k) of one target as the filter takes them."""
-    return lambda part: values(part)[:, None, :]
+def _weighed(values: Disturbances, weights: Sequence[float]) -> Disturbances:
+    """Disturbances (steps, k), so many times for each of some targets, as the filter takes them."""
+    return lambda part: values(part)[:, None, :] * np.array(weights)[:, None]
 
 
 def linearised(case: Case, fit: Fit) -> Linearisation:

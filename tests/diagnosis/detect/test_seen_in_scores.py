@@ -10,7 +10,7 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.detect.visibility import cannot_tell, hidden, judged
 from diagnosis.fit.moved import moved_effects, moved_parameters
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import best_plain_fit, nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
@@ -45,6 +45,19 @@ def test_steps_of_an_input_that_no_rotor_stands_behind_are_found() -> None:
     assert min(abs(step / 0.1 - 1.0) for step, _ in found) < 0.01
 
 
+def test_steps_of_a_command_that_takes_a_hundredth_of_its_range_are_found() -> None:
+    # Truth: a drone whose torque command may go to 1 and goes to 0.01 gets it rounded to 0.003: a step smaller than any of the whole range.
+    drone = bind(load_plant(ROOT / "plants" / "antx_2dof_drone.toml"))
+    t_s = np.arange(0.0, 20.0, 0.004)
+    rates, phases = np.random.default_rng(7).uniform((0.5, 0.0), (6.0, 6.3), (5, 2)).T
+    u = 0.003 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)[:, None]
+    rig = with_effects(drone, {"input.quantization": {"q": 0.003}})
+    run = simulate(rig, t_s, np.zeros(4), u, substeps=4, keep="y")
+    case = make_case(effect_library(drone), [RunLog(log_columns(drone.model), 0.004, "open", t_s, u, run.y)])
+    found = likely_steps(linearised(case, best_plain_fit(case)), "input")
+    assert min(abs(step / 0.003 - 1.0) for step, _ in found) < 0.01
+
+
 @pytest.mark.parametrize(("shape", "kind"), [({"h": 0.15}, Kind(hold=0.12)), ({"s": 0.3}, Kind(shift=0.25))])
 def test_steps_that_hold_or_lie_elsewhere_are_found_near_their_size_with_what_they_are_like(
     shape: dict[str, float], kind: Kind
@@ -64,9 +77,11 @@ def test_one_pass_backwards_tells_how_any_disturbance_of_a_state_meets_the_innov
     linearisation = plain_linearisation()
     rng = np.random.default_rng(5)
     pushes = [rng.normal(size=len(filter_input.t_s)) for filter_input in linearisation.filter_inputs]
-    for target in range(len(linearisation.case.library.bound.model.states)):
+    states = len(linearisation.case.library.bound.model.states)
+    for target in range(states):
         answer = linearisation.answer([lambda part, push=push: push[part, None] for push in pushes], target)
-        met = sum(float(pull @ push) for pull, push in zip(linearisation.pulls(target), pushes, strict=True))
+        pulls = linearisation.pulls(np.eye(states)[target])
+        met = sum(float(pull @ push) for pull, push in zip(pulls, pushes, strict=True))
         assert met == pytest.approx(float(answer[:, 0] @ linearisation.w), rel=1e-9)
 
 
