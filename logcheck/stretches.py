@@ -72,8 +72,9 @@ def _kept(log: RunLog, chosen: Sequence[slice]) -> str:
 
 
 def _every(log: RunLog, rate_rad_s: float) -> int:
-    """The factor by which a log may be thinned: its rows are then a share of the plant's shortest time constant apart, or COARSEST_S."""
-    apart_s = min(thresholds.COARSEST_S, thresholds.OF_SHORTEST / max(rate_rad_s, thresholds.OF_SHORTEST))
+    """The factor by which a log may be thinned: its rows are then a time constant of the plant apart, the shortest, or COARSEST_S. The
+    filter follows what moves between them by the equations."""
+    apart_s = min(thresholds.COARSEST_S, 1.0 / rate_rad_s if rate_rad_s > 0.0 else np.inf)
     return int(apart_s / log.sample_period_s + ROUNDED)
 
 
