@@ -1,0 +1,34 @@
+"""What two logs have in common: rows of the hold-out, rows given twice, the same angle with another input."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.logcheck.flight import clean, examined, kinds, other_flight
+from tests.replay.firmware_flights import rows_of
+
+
+def test_a_holdout_that_overlaps_the_training_runs_is_refused_whatever_its_times() -> None:
+    log = clean()
+    part = rows_of(log, np.arange(2001) > 1500)
+    found = examined(log, holdout=[replace(part, t_s=part.t_s - part.t_s[0])])
+    assert kinds(found, "refuse") == {"holdout_overlap"}
+    assert kinds(examined(log, holdout=[other_flight()])) == set()
+
+
+def test_rows_given_twice_for_training_count_once() -> None:
+    found = examined(clean(), clean())
+    assert kinds(found) == {"duplicate_rows"}
+    assert not found.logs[0].excluded.any()
+    assert found.logs[1].excluded.mean() > 0.9
+
+
+@pytest.mark.parametrize(("factor", "severity"), [(1.1, None), (1.5, "note"), (2.5, "note")])
+def test_logs_that_hold_the_same_angle_with_another_input_are_told_and_not_refused(
+    factor: float, severity: str | None
+) -> None:
+    other = other_flight()
+    scaled = replace(other, u=np.column_stack([other.u[:, 0] / factor, other.u[:, 1]]))
+    found = [finding for finding in examined(clean(), scaled).findings if finding.kind == "two_plants"]
+    assert [finding.severity for finding in found] == ([] if severity is None else [severity])

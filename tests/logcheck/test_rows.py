@@ -1,0 +1,45 @@
+"""Rows that are missing, come twice or out of order, and clocks that are off or jitter."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.logcheck.flight import clean, examined, kinds
+from tests.replay.firmware_flights import rows_of
+
+
+def test_missing_rows_are_counted_by_time_and_by_number() -> None:
+    log, kept = clean(), np.ones(2001, bool)
+    kept[[300, 301, 900]] = False
+    found = examined(rows_of(replace(log, seq=np.arange(2001)), kept))
+    assert kinds(found) == {"missing_rows", "sequence_gap"}
+    assert (found.logs[0].timing.missing_by_time, found.logs[0].timing.missing_by_seq) == (3, 3)
+    closed_up = replace(rows_of(replace(log, seq=np.arange(2001)), kept), t_s=log.t_s[:-3])
+    assert kinds(examined(closed_up)) == {"sequence_gap", "sequence_against_time"}
+
+
+def test_repeated_and_disordered_rows_are_left_out() -> None:
+    log = clean()
+    seq = np.arange(2001)
+    seq[500] = 499
+    seq[800] = 700
+    found = examined(replace(log, seq=seq))
+    assert kinds(found, "exclude") == {"repeated_rows", "disordered_rows"}
+    assert np.flatnonzero(found.logs[0].excluded).tolist() == [500, 800]
+
+
+def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
+    log = clean()
+    off = examined(replace(log, t_s=log.t_s * 1.002))
+    assert kinds(off) == {"sample_period"}
+    assert off.logs[0].timing.period_error_ppm == pytest.approx(2000.0, rel=1e-6)
+    late_s = np.random.default_rng(4).uniform(0.0, 1e-3, 2001)
+    jittered = examined(replace(log, t_s=log.t_s + late_s))
+    assert kinds(jittered) == {"jitter"}
+    assert jittered.logs[0].timing.jitter_rms_s == pytest.approx(1e-3 * np.sqrt(1.0 / 6.0), rel=0.05)
+    # Truth: rows 10 ms apart on average, each late by its own 2 ms rms: 2000 of these move the mean by 4500 ppm rms, and not the clock.
+    steps_s = 0.01 + np.random.default_rng(5).uniform(-1.0, 1.0, 2000) * 2e-3 * np.sqrt(3.0)
+    waiting = examined(replace(log, t_s=np.concatenate([[0.0], np.cumsum(steps_s)])))
+    assert abs(waiting.logs[0].timing.period_error_ppm) > 500.0
+    assert "sample_period" not in kinds(waiting)
