@@ -1,5 +1,4 @@
-"""The sealed benchmark: rigs of several kinds with hidden effects, each kind with its own simulation, the scorer, and what
-its scores teach of probabilities."""
+"""A seed and a kind of rig in; cases with sealed effects, scores of their answers and what these teach of probabilities out."""
 
 from blind.calibration.calibrate import calibrate
 from blind.calibration.examples import family

@@ -1,1 +1,1 @@
-"""A board behind a serial line: the emulated one and the real one, and the flight with either."""
+"""Generated C and a board, emulated or real, in; an image on it, the serial line to it and flights with it out."""

@@ -1,5 +1,6 @@
 """The project's own rules: one-way imports, packages of this checkout, style, types, and a Makefile that explains itself."""
 
+import ast
 import importlib
 import os
 import re
@@ -116,17 +117,50 @@ def test_no_generated_or_fetched_file_is_tracked() -> None:
     assert not [name for name in tracked if name.endswith((".so", ".elf", ".bin", ".mat", ".pyc"))]
 
 
-MOST_FILES = 20
+MOST_FILES, LEAST_FILES = 20, 3
 CATALOGUES = {"sim/effects", "twinlaw/verbs"}  # a file a variant: they may grow
+FOREIGN = "codegen/libraries/"  # folders as Arduino, STM32Cube and Zephyr look for them
+SMALL = {
+    "firmware/board/no_pins",  # of a chip's files those two that a board without pins has otherwise
+    "verification/templates",  # two programs in C around a law, as all of verification runs it
+}
 
 
-def test_a_folder_of_sources_can_be_read_at_a_glance() -> None:
-    sources = [ROOT / line for line in _run("git", "ls-files", *PACKAGES, "firmware").stdout.split()]
-    if not sources:
+def _held() -> dict[str, tuple[int, int]]:
+    """How many files of code, templates too, each folder of the packages and of the firmware holds, and how many folders that hold some."""
+    files, folders = Counter[str](), Counter[str]()
+    for line in _run("git", "ls-files", *PACKAGES, "firmware").stdout.split():
+        path = Path(line)
+        if path.suffix in {".py", ".c", ".h", ".S", ".j2"} and (ROOT / path).exists():
+            folder = path.parent.as_posix()
+            files[folder] += 1
+            if files[folder] == 1:
+                folders[path.parent.parent.as_posix()] += 1
+    return {folder: (count, folders[folder]) for folder, count in files.items()}
+
+
+def test_a_folder_of_sources_can_be_read_at_a_glance_and_is_one_for_a_reason() -> None:
+    held = _held()
+    if not held:
         pytest.skip("this copy of the project is no git checkout")
-    code = [path for path in sources if path.suffix in {".py", ".c", ".h", ".S"} and path.exists()]
-    held = Counter(path.parent.relative_to(ROOT).as_posix() for path in code)
-    assert {folder: count for folder, count in held.items() if count > MOST_FILES and folder not in CATALOGUES} == {}
+    assert {name: files for name, (files, _) in held.items() if files > MOST_FILES and name not in CATALOGUES} == {}
+    small = {name for name, (files, folders) in held.items() if files - _is_package(name) + folders < LEAST_FILES}
+    assert {name for name in small if not name.startswith(FOREIGN)} == SMALL
+
+
+def _is_package(folder: str) -> bool:
+    return (ROOT / folder / "__init__.py").exists()
+
+
+# "A log in; its findings out", "From a log to its findings", "A log goes in, its findings come out".
+IN_AND_OUT = re.compile(r"\bin[;,:]? .*\bout\b|^From .* to ", re.DOTALL)
+
+
+def test_every_room_says_in_its_first_sentence_what_goes_in_and_what_comes_out() -> None:
+    rooms = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("__init__.py"))]
+    told = {path: (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "") for path in rooms}
+    silent = [path for path, text in told.items() if not IN_AND_OUT.search(text.partition("\n\n")[0])]
+    assert [path.parent.relative_to(ROOT).as_posix() for path in silent] == []
 
 
 @pytest.mark.parametrize("package", ["diagnosis", "logcheck", "replay"])

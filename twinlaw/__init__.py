@@ -1,4 +1,4 @@
-"""The command line and the reports, and the same stages as functions (twinlaw.api); nothing computes here."""
+"""A command, or a call of twinlaw.api, in; what the stages make, as files, reports or records, out; nothing computes here."""
 
 import os
 from typing import TYPE_CHECKING, Any

@@ -1,1 +1,1 @@
-"""The compiled law held against its exact model, and proved bounds on what rounding can do."""
+"""A controller table and its compiled law in; equality with the exact model, bounds on rounding, cycles and stack, and proofs out."""

@@ -1,4 +1,4 @@
-"""Plain ways to diagnose that a good one has to beat, on the same files and with the same answers."""
+"""A plant and its logs in; answers of plain ways to diagnose out, which a good one has to beat on the same files."""
 
 from collections.abc import Callable, Mapping, Sequence
 

@@ -1,1 +1,1 @@
-"""An STM32G071 in software: core, peripherals, serial line, and the faces under which the rig meets it."""
+"""An image and bytes of a serial line in; what an STM32G071 does with them out: its core and peripherals in software, by the cycle."""

@@ -1,4 +1,4 @@
-"""The verbs of the command line in the order of the work: one file each, with `add_arguments(parser)` and `run(options)`.
+"""A verb's options in, what it prints and leaves in files out: one file a verb, with `add_arguments(parser)` and `run(options)`.
 
 A verb's file is imported when it is asked for, and only then: the tools behind one verb do not slow the others down.
 """
@@ -16,7 +16,7 @@ from twinlaw.cli.parser import Parser
 DESCRIPTION = "From a plant's equations to a verified flight of a microcontroller, and back."
 EPILOGUE = f"Start with: twinlaw run --plant plants/ce150.toml --out build. The pages are in {page('')}"
 
-# The word that a person types, and the file of this folder that answers it.
+# The word that a person types, and the file of this folder that answers it, in the order of the work.
 VERBS: Mapping[str, str] = {
     "run": "run",
     "design": "design",

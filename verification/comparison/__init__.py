@@ -1,1 +1,1 @@
-"""Controllers side by side: the papers' manoeuvres, plants that are not as designed for, and figures of merit."""
+"""Several controllers and the papers' manoeuvres in; flights side by side, of plants off their design too, and figures of merit out."""

@@ -1,4 +1,4 @@
-"""Static bounds on cycles and stack of functions of an ARMv6-M image."""
+"""An ARMv6-M image and how often its loops pass in; static bounds on cycles and stack of its functions out."""
 
 from verification.static_bound.bound import LoopPasses as LoopPasses
 from verification.static_bound.bound import PathShare as PathShare

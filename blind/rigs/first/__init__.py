@@ -1,4 +1,5 @@
-"""The first kind of rig: semi-implicit steps, bristles in the bearings, scheduled pole placement, 10 ms rows, three runs of 60 s."""
+"""A seed in, a rig of the first kind out: semi-implicit steps, bristles in the bearings, scheduled pole placement, rows of 10 ms, three
+runs of 60 s."""
 
 from blind.rigs.bench import RigKind
 from blind.rigs.first.catalogue import CATALOGUE

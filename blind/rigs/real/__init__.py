@@ -1,4 +1,4 @@
-"""The third kind of rig: several plants, errors of the colour that real recordings have, logs as people make them.
+"""A seed in, a rig of the third kind out: several plants, errors of the colour that real recordings have, logs as people make them.
 
 It shares with the others only what a case is and how it is sized and sealed, and of a CE150 what the library's formulas are.
 """

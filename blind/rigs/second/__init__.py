@@ -1,4 +1,4 @@
-"""The second kind of rig: Runge-Kutta steps of 125 us, three laws of friction, three kinds of controller, rows of 5
+"""A seed in, a rig of the second kind out: Runge-Kutta steps of 125 us, three laws of friction, three kinds of controller, rows of 5
 to 20 ms.
 
 It shares with the first only what a case is and how it is sized and sealed: motion, friction, controllers, manoeuvres,

@@ -1,1 +1,1 @@
-"""A simulated helicopter in place of flight tests that are not public: equations, integration and noise that no estimator knows."""
+"""A pilot's inputs in; flights of a simulated helicopter, in place of tests that are not public, their noise unknown to estimators, out."""
