@@ -16,7 +16,7 @@ from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, 
 from diagnosis.decide.idle import shares_of, without_idle
 from diagnosis.decide.rows import demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
-from diagnosis.decide.weighing import Tried, Weighed, first_share, likeliest, weigh
+from diagnosis.decide.weighing import Explanations, Weighed, first_share, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.detect.detection import form_scores
 from diagnosis.detect.linearisation import linearised
@@ -93,8 +93,8 @@ def _gust(seen: Seen, material: Material, found: Draught) -> Result:
     gained = found.gusty.evidence - found.quiet.evidence
     p = min(1.0, float(np.exp(-gained)))
     seen = replace(seen, retuned=found.quiet, detection=replace(seen.detection, p=p))
-    tried = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.score_tests)
-    seen, judged = _judged(seen, material, tried, None)
+    search = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.score_tests)
+    seen, judged = _judged(seen, material, search, None)
     return gap(seen, material, judged)
 
 
@@ -195,30 +195,30 @@ def _ranked(
 
     What predicts better is asked of all logs, whether a gap matters of those to explain alone: no further log makes a gap none.
     """
-    tried = _tried(seen, found, beyond)
-    fitted_ahead = foreseen(logs, tried)
-    weighed = weigh(without_idle(tried, shares_of(tried, fitted_ahead, logs, None))[0], fitted_ahead)
+    explanations = _explanations(seen, found, beyond)
+    fitted_ahead = foreseen(logs, explanations)
+    weighed = weigh(without_idle(explanations, shares_of(explanations, fitted_ahead, logs, None))[0], fitted_ahead)
     matters_nats = weighed.ahead_nats
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     ahead = fitted_ahead if holdout is None else with_held_out(fitted_ahead, holdout)
-    tried, idle = without_idle(tried, shares_of(tried, ahead, logs, holdout))
-    weighed = replace(weigh(tried, ahead), ahead_nats=matters_nats)
+    explanations, idle = without_idle(explanations, shares_of(explanations, ahead, logs, holdout))
+    weighed = replace(weigh(explanations, ahead), ahead_nats=matters_nats)
     seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))
     if holdout is None or not weighed.fitted:
         return _Ranked(seen.because(*weighed.decisions), weighed, holdout)
     told, notes, rules = asked(holdout, weighed.fitted[0])
-    weighed = replace(weigh(tried, ahead, favour(told)), ahead_nats=matters_nats)
+    weighed = replace(weigh(explanations, ahead, favour(told)), ahead_nats=matters_nats)
     return _Ranked(seen.because(*rules, *weighed.decisions), weighed, holdout, notes)
 
 
-def _tried(seen: Seen, found: Search, beyond: Retune | None) -> Tried:
+def _explanations(seen: Seen, found: Search, beyond: Retune | None) -> Explanations:
     """All that may explain the gap; what swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     library = seen.case.library
     left = left_beside(form_scores(linearised(seen.case, best.fit)), [library.effects[name] for name in best.effects])
     named = tuple(entry for entry in found.fitted if entry.effects)
     alone, evidence = (None, None) if beyond is None else (beyond.fitted, beyond.score)
-    return Tried(named, seen.retuned, library, left, alone, evidence)
+    return Explanations(named, seen.retuned, library, left, alone, evidence)
 
 
 def _checked(

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from diagnosis.decide.idle import one_less
-from diagnosis.decide.weighing import Tried, Weighed
+from diagnosis.decide.weighing import Explanations, Weighed
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -14,7 +14,7 @@ MOST_FORESEEN = 16  # explanations, by evidence: of 58 right names one had a low
 TOLD_FROM = 0.02  # probability: of less probable ones no rule is told
 
 
-def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
+def foreseen(logs: FittedLogs, explanations: Explanations) -> dict[FittedHypothesis, float]:
     """Nats by which the likeliest of what was tried, the same with one effect less, and parameters beyond their spread predict the logs
     better than the plant alone, over horizons from a row to a second (validate/score.py), in nats of all readings that share no error
     (`FittedLogs.readings`).
@@ -22,10 +22,10 @@ def foreseen(logs: FittedLogs, tried: Tried) -> dict[FittedHypothesis, float]:
     What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off. Those with
     less evidence than the MOST_FORESEEN most evident are not asked.
     """
-    asked = sorted(tried.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
-    fewer = [other for entry in asked for other in one_less(entry, tried.named)]
-    asked = list(dict.fromkeys([*asked, *fewer, *([] if tried.beyond is None else [tried.beyond])]))
-    plain, readings = tried.nominal.fit.hypothesis, logs.readings
+    asked = sorted(explanations.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
+    fewer = [other for entry in asked for other in one_less(entry, explanations.named)]
+    asked = list(dict.fromkeys([*asked, *fewer, *([] if explanations.beyond is None else [explanations.beyond])]))
+    plain, readings = explanations.nominal.fit.hypothesis, logs.readings
     gains = thread_map(lambda entry: logs.gain(entry.fit.hypothesis, plain), asked)
     return {entry: readings * gain for entry, gain in zip(asked, gains, strict=True)}
 

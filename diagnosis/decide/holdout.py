@@ -159,12 +159,12 @@ def is_surely_better(told: Score) -> bool:
     return told.gain > decisions.SURELY * told.sd
 
 
-def surely_better(holdout: Holdout, tried: Sequence[FittedHypothesis]) -> tuple[bool, tuple[Decision, ...]]:
-    """Whether the first of what was `tried` surely predicts these logs better than `base`, by what matters, and the rule; no where nothing
+def surely_better(holdout: Holdout, hypotheses: Sequence[FittedHypothesis]) -> tuple[bool, tuple[Decision, ...]]:
+    """Whether the first of `hypotheses` surely predicts these logs better than `base`, by what matters, and the rule; no where nothing
     was."""
-    if not tried:
+    if not hypotheses:
         return False, ()
-    told, of = holdout.score(tried[0].fit.hypothesis), " + ".join(tried[0].effects)
+    told, of = holdout.score(hypotheses[0].fit.hypothesis), " + ".join(hypotheses[0].effects)
     least = max(decisions.SURELY * told.sd, float(decisions.MATTERS))
     outcome = "matters there" if told.gain > least else "no gap: too small to matter"
     return told.gain > least, (held_against("matters_elsewhere", of, told.gain, least, NATS, outcome),)

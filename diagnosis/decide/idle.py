@@ -12,7 +12,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decide.holdout import Holdout
-from diagnosis.decide.weighing import Tried, beyond_spread
+from diagnosis.decide.weighing import Explanations, beyond_spread
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -44,11 +44,13 @@ Shares = Mapping[
 ]  # by output of the logs that were fitted, and of those held out where these have a say
 
 
-def shares_of(tried: Tried, asked: Iterable[FittedHypothesis], logs: FittedLogs, holdout: Holdout | None) -> Shares:
+def shares_of(
+    explanations: Explanations, asked: Iterable[FittedHypothesis], logs: FittedLogs, holdout: Holdout | None
+) -> Shares:
     """What the logs say of each effect of what was `asked` beside the others, where the same without it was asked too."""
     known = set(asked)
-    pairs = [(entry, fewer) for entry in tried.named if entry in known for fewer in one_less(entry, known)]
-    plain = tried.nominal.fit.hypothesis
+    pairs = [(entry, fewer) for entry in explanations.named if entry in known for fewer in one_less(entry, known)]
+    plain = explanations.nominal.fit.hypothesis
 
     def said(entry: FittedHypothesis, fewer: FittedHypothesis) -> list[list[Said]]:
         one, other = (logs.errors_beside(each.fit.hypothesis, plain) for each in (entry, fewer))
@@ -74,7 +76,7 @@ def _said(readings: int, one: Errors, other: Errors, plain: Errors) -> list[Said
     ]
 
 
-def without_idle(tried: Tried, shares: Shares) -> tuple[Tried, tuple[Decision, ...]]:
+def without_idle(explanations: Explanations, shares: Shares) -> tuple[Explanations, tuple[Decision, ...]]:
     """What was tried, without hypotheses one of whose effects earns no name, and the rules.
 
     In one output at least an effect must do FORMS_OFF of what the hypothesis predicts better, and surely: in the logs that were not fitted,
@@ -99,11 +101,13 @@ def without_idle(tried: Tried, shares: Shares) -> tuple[Tried, tuple[Decision, .
         )
         for entry, fewer, nats, least in idle
     )
-    beside = dict(tried.beside)
+    beside = dict(explanations.beside)
     for entry, fewer, *_ in idle:  # triples first, so that what a pair has beside an idle effect reaches a single one
         beside[fewer] = max(beside.get(fewer, -np.inf), beside.get(entry, -np.inf), entry.evidence)
     gone = {entry for entry, *_ in idle}
-    return replace(tried, named=tuple(entry for entry in tried.named if entry not in gone), beside=beside), rules
+    return replace(
+        explanations, named=tuple(entry for entry in explanations.named if entry not in gone), beside=beside
+    ), rules
 
 
 def _hardest(said: Sequence[Sequence[Said]], spared: float) -> tuple[float, float]:

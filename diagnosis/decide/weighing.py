@@ -61,7 +61,7 @@ class Weighed:
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
+class Explanations:
     """All that may explain a gap: hypotheses with effects, the plant without any, what forms still gain beside the best of them in nats,
     and parameters beyond their spread alone with their evidence (None: there are none); and the evidence that hypotheses have `beside`
     effects that are not worth a name."""
@@ -86,7 +86,7 @@ def learned() -> ComparisonLaw:
 
 
 def weigh(
-    tried: Tried,
+    explanations: Explanations,
     ahead: Mapping[FittedHypothesis, float],
     favour: float | None = None,
     law: ComparisonLaw | None = None,
@@ -94,14 +94,14 @@ def weigh(
     """Probabilities of all that was tried, given that there is a gap; `ahead` are the nats by which what was asked predicts the logs better
     than the plant alone: what was not asked does so as little as any. `favour` is what logs that were not fitted say of the first."""
     learnt = learned() if law is None else law
-    told = replace(_comparison(tried, ahead), favour=favour)
+    told = replace(_comparison(explanations, ahead), favour=favour)
     shares, explained = learnt.shares(told), learnt.explained(told)
     order = np.argsort(-shares[:-1], kind="stable")[:RANKED].tolist()
     first = likeliest_of(told, shares)
     partly = (1.0 - explained) * learnt.partly(first)
     scale = learnt.scale_nats(told.formed_nats)
     return Weighed(
-        tuple(tried.named[index] for index in order),
+        tuple(explanations.named[index] for index in order),
         tuple(float(explained * shares[index]) for index in order),
         1.0 - explained - partly,
         float(explained * shares[-1]),
@@ -119,27 +119,28 @@ def _ahead_nats(told: ModelComparison, shares: Array) -> float | None:
     return float(np.dot(shares, ahead)) if shares.any() else None
 
 
-def _comparison(tried: Tried, ahead: Mapping[FittedHypothesis, float]) -> ModelComparison:
+def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, float]) -> ModelComparison:
     least = min(ahead.values(), default=0.0)
-    nominal, effects = tried.nominal, tried.library.effects
-    first = max(tried.named, key=tried.evidence, default=nominal)
-    found = tried.evidence(first)
-    best = found if tried.retune is None else max(found, tried.retune)
+    nominal, effects = explanations.nominal, explanations.library.effects
+    first = max(explanations.named, key=explanations.evidence, default=nominal)
+    found = explanations.evidence(first)
+    best = found if explanations.retune is None else max(found, explanations.retune)
     return ModelComparison(
         candidates=tuple(
             Candidate(
                 " + ".join(entry.effects),
-                tried.evidence(entry) - nominal.evidence,
-                prior_odds(entry, effects, tried.library.frictionless, tried.library.steps) - beyond_spread(entry),
+                explanations.evidence(entry) - nominal.evidence,
+                prior_odds(entry, effects, explanations.library.frictionless, explanations.library.steps)
+                - beyond_spread(entry),
                 ahead.get(entry, least),
             )
-            for entry in tried.named
+            for entry in explanations.named
         ),
         gain_nats=max(best - nominal.evidence, 0.0),
-        formed_nats=max(found - _read_off(tried, first).evidence, 0.0),
-        left_nats=tried.left_nats,
-        parameters_nats=None if tried.retune is None else tried.retune - nominal.evidence,
-        parameters_ahead_nats=0.0 if tried.beyond is None else ahead.get(tried.beyond, least),
+        formed_nats=max(found - _read_off(explanations, first).evidence, 0.0),
+        left_nats=explanations.left_nats,
+        parameters_nats=None if explanations.retune is None else explanations.retune - nominal.evidence,
+        parameters_ahead_nats=0.0 if explanations.beyond is None else ahead.get(explanations.beyond, least),
     )
 
 
@@ -149,10 +150,10 @@ def beyond_spread(entry: FittedHypothesis) -> float:
     return 0.5 * float(beyond @ beyond)
 
 
-def _read_off(tried: Tried, first: FittedHypothesis) -> FittedHypothesis:
+def _read_off(explanations: Explanations, first: FittedHypothesis) -> FittedHypothesis:
     """That of `first` which is read off the logs, a sensor's steps, where it was tried alone: no form of it can be a little off."""
-    exact = {name for name in first.effects if tried.library.effects[name].shown_in_readings}
-    return next((entry for entry in tried.named if set(entry.effects) == exact), tried.nominal)
+    exact = {name for name in first.effects if explanations.library.effects[name].shown_in_readings}
+    return next((entry for entry in explanations.named if set(entry.effects) == exact), explanations.nominal)
 
 
 def _rules(told: ModelComparison, first: Candidate | None, scale: float, explained: float) -> tuple[Decision, ...]:

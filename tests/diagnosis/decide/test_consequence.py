@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.decide.consequence import foreseen, foreseen_rules
-from diagnosis.decide.weighing import Tried, Weighed, weigh
+from diagnosis.decide.weighing import Explanations, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
@@ -41,8 +41,8 @@ def judged(found: FittedHypothesis | None, ahead_nats: float | None) -> Judged:
 
 
 def weighed_of(case: Case, plain: FittedHypothesis, found: FittedHypothesis) -> Weighed:
-    tried = Tried((found,), plain, case.library, 5.0)
-    return weigh(tried, foreseen(FittedLogs(case), tried))
+    explanations = Explanations((found,), plain, case.library, 5.0)
+    return weigh(explanations, foreseen(FittedLogs(case), explanations))
 
 
 def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not() -> None:
@@ -84,7 +84,7 @@ def test_what_is_there_predicts_the_logs_better_and_what_is_idle_does_not() -> N
     case = arm_case(arm_log({**rub, **idle}, seed=76))
     both, alone, other, plain = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle, {}))
     logs = FittedLogs(case)
-    found = foreseen(logs, Tried((both, alone, other), plain, case.library, 5.0))
+    found = foreseen(logs, Explanations((both, alone, other), plain, case.library, 5.0))
     assert found[alone] > 0.3 * logs.readings
     assert found[other] < 0.1 * found[alone]
     assert abs(found[both] - found[alone]) < decisions.MATTERS * logs.readings
@@ -95,7 +95,7 @@ def test_a_second_effect_predicts_what_the_first_leaves() -> None:
     rub, pull = {"arm.coulomb": {"b": 4e-4}}, {"arm.offset_force": {"offset": 2e-4}}
     case = arm_case(arm_log({**rub, **pull}, seed=76))
     both, alone, plain = (settled(case, effects) for effects in ({**rub, **pull}, rub, {}))
-    found = foreseen(logs := FittedLogs(case), Tried((alone, both), plain, case.library, 5.0))
+    found = foreseen(logs := FittedLogs(case), Explanations((alone, both), plain, case.library, 5.0))
     assert found[both] - found[alone] > decisions.MATTERS * logs.readings
     weighed = Weighed((both, alone), (0.6, 0.01), 0.39, 0.0, 1.0)
     (rule,) = foreseen_rules(found, weighed)  # what is unlikely is not told

@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, surely_better, with_held_out
-from diagnosis.decide.weighing import Tried, weigh
+from diagnosis.decide.weighing import Explanations, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
 from diagnosis.detect.linearisation import Scores
@@ -134,7 +134,7 @@ def test_a_hold_out_of_another_rig_makes_no_gap_none() -> None:
     seen = Seen(case, None, plain, object(), (), None, detection)  # type: ignore[arg-type]
     told, notes, _ = asked(other, found)
     named = replace(found, evidence=30.0)
-    weighed = weigh(Tried((named,), plain, case.library, 20.0), {named: 10.0}, favour(told))
+    weighed = weigh(Explanations((named,), plain, case.library, 20.0), {named: 10.0}, favour(told))
     assert weighed.probabilities[0] < 0.5
     result = Judged(object(), None, weighed, other.base, other, notes)  # type: ignore[arg-type]
     after, stands = of_consequence(seen, result)

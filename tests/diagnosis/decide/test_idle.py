@@ -7,7 +7,7 @@ import pytest
 from diagnosis.decide.consequence import foreseen
 from diagnosis.decide.holdout import holdout_of
 from diagnosis.decide.idle import Said, shares_of, without_idle
-from diagnosis.decide.weighing import Tried, weigh
+from diagnosis.decide.weighing import Explanations, weigh
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -35,11 +35,11 @@ def test_an_effect_that_predicts_worse_is_left_out_whatever_its_evidence() -> No
     alone, plain = settled(case, RUB), settled(case, {})
     wrong = alone.fit.hypothesis.with_effects({**RUB, "theta_sensor.scale": {"scale": 1.1}})
     both = FittedHypothesis(("arm.coulomb", "theta_sensor.scale"), replace(alone.fit, hypothesis=wrong), 1e6)
-    tried, logs = Tried((both, alone), plain, case.library, 5.0), FittedLogs(case)
-    found, (rule,) = without_idle(tried, shares_of(tried, foreseen(logs, tried), logs, None))
+    explanations, logs = Explanations((both, alone), plain, case.library, 5.0), FittedLogs(case)
+    found, (rule,) = without_idle(explanations, shares_of(explanations, foreseen(logs, explanations), logs, None))
     assert found.named == (alone,)
     assert (rule.of, rule.outcome) == ("arm.coulomb + theta_sensor.scale", "theta_sensor.scale is left out")
-    assert without_idle(tried, shares_of(tried, [both], logs, None))[0].named == (both, alone)
+    assert without_idle(explanations, shares_of(explanations, [both], logs, None))[0].named == (both, alone)
 
 
 def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_idle(
@@ -52,8 +52,8 @@ def test_an_effect_whose_part_parameters_take_only_beyond_their_spread_is_not_id
     bent = replace(alone, fit=replace(alone.fit, hypothesis=replace(alone.fit.hypothesis, theta=theta)))
     # Of 40 nats each effect must do 4: where the friction alone predicts 13 nats better than both the force does 5, at 15 it does 3.
     for worse, kept in ((13.0, (both, bent)), (15.0, (bent,))):
-        tried = Tried((both, bent), plain, pulled_case.library, 5.0)
-        assert without_idle(tried, {(both, bent): [[Said(-worse, SURE, 40.0, 100)]]})[0].named == kept
+        explanations = Explanations((both, bent), plain, pulled_case.library, 5.0)
+        assert without_idle(explanations, {(both, bent): [[Said(-worse, SURE, 40.0, 100)]]})[0].named == kept
 
 
 def test_an_effect_must_do_its_part_beside_any_that_it_stands_with(
@@ -62,13 +62,13 @@ def test_an_effect_must_do_its_part_beside_any_that_it_stands_with(
     # Truth by hand: of 40 nats friction does 1 beside the force, whichever of the two is likelier by itself: it is idle; with 10 it is not.
     both, rubbing, pulled, plain = fitted
     rubbing, pulled = replace(rubbing, evidence=60.0), replace(pulled, evidence=50.0)
-    tried = Tried((both, rubbing, pulled), plain, pulled_case.library, 5.0)
+    explanations = Explanations((both, rubbing, pulled), plain, pulled_case.library, 5.0)
     further = {(both, rubbing): [[Said(35.0, SURE, 40.0, 100)]]}
-    found, (rule,) = without_idle(tried, {**further, (both, pulled): [[Said(1.0, SURE, 40.0, 100)]]})
+    found, (rule,) = without_idle(explanations, {**further, (both, pulled): [[Said(1.0, SURE, 40.0, 100)]]})
     assert found.named == (rubbing, pulled)
     assert (rule.outcome, rule.value, rule.limit) == ("arm.coulomb is left out", 1.0, pytest.approx(4.0))
     shares = {**further, (both, pulled): [[Said(10.0, SURE, 40.0, 100)]]}
-    assert without_idle(tried, shares)[0].named == (both, rubbing, pulled)
+    assert without_idle(explanations, shares)[0].named == (both, rubbing, pulled)
 
 
 def test_what_a_large_effect_does_to_one_output_says_nothing_of_another(
@@ -76,10 +76,10 @@ def test_what_a_large_effect_does_to_one_output_says_nothing_of_another(
 ) -> None:
     # Truth by hand: 400 nats of one output are the first effect's alone; of the 30 of the other the second does 12, which is plain to see.
     both, alone, _, plain = fitted
-    tried = Tried((both, alone), plain, pulled_case.library, 5.0)
+    explanations = Explanations((both, alone), plain, pulled_case.library, 5.0)
     large = Said(0.5, 1.0, 400.0, 100)
-    assert without_idle(tried, {(both, alone): [[large, Said(12.0, 3.0, 30.0, 100)]]})[0].named == (both, alone)
-    assert without_idle(tried, {(both, alone): [[large, Said(2.0, 0.5, 30.0, 100)]]})[0].named == (alone,)
+    assert without_idle(explanations, {(both, alone): [[large, Said(12.0, 3.0, 30.0, 100)]]})[0].named == (both, alone)
+    assert without_idle(explanations, {(both, alone): [[large, Said(2.0, 0.5, 30.0, 100)]]})[0].named == (alone,)
 
 
 @pytest.mark.parametrize(
@@ -111,8 +111,8 @@ def test_an_effect_must_surely_predict_better_in_logs_that_were_not_fitted_where
 ) -> None:
     # Truth by hand: twice its standard error is sure.
     both, alone, _, plain = fitted
-    tried = Tried((both, alone), plain, pulled_case.library, 5.0)
-    found, rules = without_idle(tried, {(both, alone): [[Said(*part)] for part in said]})
+    explanations = Explanations((both, alone), plain, pulled_case.library, 5.0)
+    found, rules = without_idle(explanations, {(both, alone): [[Said(*part)] for part in said]})
     assert (found.named == (both, alone)) is kept
     assert len(rules) == (not kept)
 
@@ -124,10 +124,10 @@ def test_what_logs_held_out_refute_does_not_stand_beside_what_they_bear_out() ->
     both, plain = settled(case, {**RUB, **pull}), settled(case, {})
     rubbing = both.fit.hypothesis.with_effects({"arm.coulomb": both.fit.hypothesis.effects["arm.coulomb"]})
     alone = FittedHypothesis(("arm.coulomb",), replace(both.fit, hypothesis=rubbing), 100.0)
-    tried, logs = Tried((both, alone), plain, case.library, 5.0), FittedLogs(case)
+    explanations, logs = Explanations((both, alone), plain, case.library, 5.0), FittedLogs(case)
     holdout = holdout_of(other, ["hold"], [None], case, plain)
-    assert without_idle(tried, shares_of(tried, tried.named, logs, None))[0].named == (both, alone)
-    assert without_idle(tried, shares_of(tried, tried.named, logs, holdout))[0].named == (alone,)
+    assert without_idle(explanations, shares_of(explanations, explanations.named, logs, None))[0].named == (both, alone)
+    assert without_idle(explanations, shares_of(explanations, explanations.named, logs, holdout))[0].named == (alone,)
 
 
 def test_a_grid_that_readings_show_makes_no_other_effect_a_small_part() -> None:
@@ -136,8 +136,8 @@ def test_a_grid_that_readings_show_makes_no_other_effect_a_small_part() -> None:
     coarse = {"theta_sensor.quantization": {"q": 20e-3}}
     case = arm_case(arm_log({**RUB, **coarse}, seed=63))
     both, read, plain = (settled(case, effects) for effects in ({**RUB, **coarse}, coarse, {}))
-    tried, logs = Tried((both, read), plain, case.library, 5.0), FittedLogs(case)
-    ((said,),) = (parts[0] for parts in shares_of(tried, tried.named, logs, None).values())
+    explanations, logs = Explanations((both, read), plain, case.library, 5.0), FittedLogs(case)
+    ((said,),) = (parts[0] for parts in shares_of(explanations, explanations.named, logs, None).values())
     assert logs.gain(both.fit.hypothesis, plain.fit.hypothesis) * logs.readings > 2.0 * said.whole
     assert said.nats == pytest.approx(said.whole, rel=0.5)
 
@@ -147,8 +147,8 @@ def test_a_hold_out_is_silent_of_what_happened_in_other_logs() -> None:
     push = {"arm.disturbance": {"torque": 2e-3, "t_0": 4.0, "duration": 1.5}}
     case, other = arm_case(arm_log({**RUB, **push}, seed=61)), arm_case(arm_log(RUB, seed=62))
     both, alone, plain = (settled(case, effects) for effects in ({**RUB, **push}, RUB, {}))
-    tried, logs = Tried((both, alone), plain, case.library, 5.0), FittedLogs(case)
-    shares = shares_of(tried, tried.named, logs, holdout_of(other, ["hold"], [None], case, plain))
+    explanations, logs = Explanations((both, alone), plain, case.library, 5.0), FittedLogs(case)
+    shares = shares_of(explanations, explanations.named, logs, holdout_of(other, ["hold"], [None], case, plain))
     assert [len(said) for said in shares.values()] == [1]
 
 
@@ -161,9 +161,9 @@ def test_what_an_idle_effect_explains_row_by_row_does_not_speak_against_what_pre
     both, rubbing, pulled = (
         replace(entry, evidence=at + nats) for entry, nats in zip(fitted, (700.0, 640.0, 50.0), strict=False)
     )
-    tried = Tried((both, rubbing, pulled), plain, pulled_case.library, 5.0)
+    explanations = Explanations((both, rubbing, pulled), plain, pulled_case.library, 5.0)
     shares = {(both, rubbing): [[Said(40.0, SURE, 40.0, 100)]], (both, pulled): [[Said(1.0, SURE, 40.0, 100)]]}
-    found, _ = without_idle(tried, shares)
+    found, _ = without_idle(explanations, shares)
     assert [found.evidence(entry) - at for entry in (rubbing, pulled)] == [640.0, 700.0]
     weighed = weigh(found, {both: 40.0, rubbing: 0.0, pulled: 39.0})
     assert weighed.fitted[0] is pulled

@@ -8,7 +8,7 @@ import pytest
 
 from blind.calibration.fit import UNLEARNED
 from diagnosis.decide import prior
-from diagnosis.decide.weighing import Tried, weigh
+from diagnosis.decide.weighing import Explanations, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
@@ -125,7 +125,7 @@ def test_what_a_sensor_s_steps_gain_makes_what_is_beside_them_no_less_sure(first
     # 40000 nats is a form, and what it lacks of the truth may gain as much.
     one = fitted(40000.0, **{first.replace(".", "__"): EFFECTS[first].absent})
     both = fitted(40150.0, **{first.replace(".", "__"): EFFECTS[first].absent, "elevation__cable_spring": {"k": 0.003}})
-    found = weigh(Tried((both, one), fitted(), effect_library(bound("ce150")), 10.0), {}, law=UNLEARNED)
+    found = weigh(Explanations((both, one), fitted(), effect_library(bound("ce150")), 10.0), {}, law=UNLEARNED)
     assert (found.fitted[0] is both) is second_counts
 
 

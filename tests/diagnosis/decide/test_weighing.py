@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from diagnosis.decide.weighing import Tried, alike, learned, weigh
+from diagnosis.decide.weighing import Explanations, alike, learned, weigh
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.library.effect_library import effect_library
 from records.model_comparison import ComparisonLaw
@@ -25,12 +25,12 @@ DRAG = fitted(390.0, arm__quadratic_drag={"c": 1e-6})
 BOTH = fitted(402.0, arm__coulomb={"b": 4e-4}, arm__quadratic_drag={"c": 1e-6})
 
 
-def tried(*named: FittedHypothesis, left: float = 5.0, retune: float | None = None) -> Tried:
-    return Tried(named, fitted(0.0), effect_library(arm()), left, retune=retune)
+def explanations(*named: FittedHypothesis, left: float = 5.0, retune: float | None = None) -> Explanations:
+    return Explanations(named, fitted(0.0), effect_library(arm()), left, retune=retune)
 
 
 def test_all_probabilities_make_one_and_follow_the_comparison_that_is_kept() -> None:
-    found = weigh(tried(DRAG, RUB, BOTH, retune=350.0), {DRAG: 1.0, RUB: 4.0}, 0.4, LAW)
+    found = weigh(explanations(DRAG, RUB, BOTH, retune=350.0), {DRAG: 1.0, RUB: 4.0}, 0.4, LAW)
     assert found.comparison is not None
     assert sum((*found.probabilities, found.retune, found.unknown, found.partly)) == pytest.approx(1.0)
     assert found.fitted[0] is RUB
@@ -47,14 +47,14 @@ def test_all_probabilities_make_one_and_follow_the_comparison_that_is_kept() -> 
 
 
 def test_what_the_hold_out_refutes_is_less_likely_and_an_unknown_effect_likelier() -> None:
-    for_it, against = (weigh(tried(RUB), {}, favour, LAW) for favour in (0.9, -0.9))
+    for_it, against = (weigh(explanations(RUB), {}, favour, LAW) for favour in (0.9, -0.9))
     assert for_it.probabilities[0] > 0.9 > 0.4 > against.probabilities[0]
     assert against.nameless
     assert not for_it.nameless
 
 
 def test_what_forms_leave_makes_an_unknown_effect_likelier() -> None:
-    little, much = (weigh(tried(RUB, left=left), {}, None, LAW).unknown for left in (3.0, 3000.0))
+    little, much = (weigh(explanations(RUB, left=left), {}, None, LAW).unknown for left in (3.0, 3000.0))
     assert much > little + 0.3
 
 
@@ -63,22 +63,25 @@ def test_parameters_that_leave_their_spread_are_paid_in_full() -> None:
     theta = RUB.fit.hypothesis.theta.copy()
     theta[0] = 5.0
     far = replace(RUB, fit=replace(RUB.fit, hypothesis=replace(RUB.fit.hypothesis, theta=theta)))
-    told = [weigh(tried(entry), {}, None, LAW).comparison for entry in (RUB, far)]
+    told = [weigh(explanations(entry), {}, None, LAW).comparison for entry in (RUB, far)]
     (near_prior,), (far_prior,) = ([one.prior_nats for one in found.candidates] for found in told if found is not None)
     assert near_prior - far_prior == pytest.approx(2.0)
 
 
 def test_parameters_alone_are_told_as_that_and_what_they_do_not_explain_is_unknown() -> None:
-    explained, not_there = weigh(tried(left=5.0, retune=160.0), {}, None, LAW), weigh(tried(left=5.0), {}, None, LAW)
+    explained, not_there = (
+        weigh(explanations(left=5.0, retune=160.0), {}, None, LAW),
+        weigh(explanations(left=5.0), {}, None, LAW),
+    )
     assert explained.retune > 0.7
     assert explained.fitted == not_there.fitted == ()
     assert (not_there.unknown, not_there.retune) == (1.0, 0.0)
 
 
 def test_names_that_the_logs_hardly_tell_apart_are_alike() -> None:
-    found = weigh(tried(RUB, DRAG, BOTH), {}, None, LAW)
+    found = weigh(explanations(RUB, DRAG, BOTH), {}, None, LAW)
     assert alike(found, RUB) == [DRAG]
-    assert alike(weigh(tried(RUB, replace(DRAG, evidence=100.0)), {}, None, LAW), RUB) == []
+    assert alike(weigh(explanations(RUB, replace(DRAG, evidence=100.0)), {}, None, LAW), RUB) == []
 
 
 def test_the_learned_law_says_what_such_a_law_must() -> None:
@@ -94,5 +97,5 @@ def test_the_learned_law_says_what_such_a_law_must() -> None:
 
 
 def test_a_re_tune_that_gains_nothing_beside_forms_that_gain_thousands_of_nats_is_unknown_by_the_learned_law() -> None:
-    assert weigh(tried(left=4000.0, retune=0.0), {}).unknown > 0.8
-    assert weigh(tried(left=5.0, retune=4000.0), {}).unknown < 0.5
+    assert weigh(explanations(left=4000.0, retune=0.0), {}).unknown > 0.8
+    assert weigh(explanations(left=5.0, retune=4000.0), {}).unknown < 0.5
