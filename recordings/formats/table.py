@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Protocol, cast
 
-from recordings.formats import apart, compressed
+from recordings.formats import compressed, other_process
 from recordings.formats.optional import is_installed, missing
 from recordings.formats.text.decoding import binary_kind
 from recordings.layout import TextLayout
@@ -26,14 +26,14 @@ class Reader(Protocol):
 class Format:
     """A file format: the module that reads it, what it is called, the package that it needs with the extra that installs it, if any.
 
-    `apart`: it is read in a program of its own, as its package is partly in C.
+    `in_other_process`: it is read in a program of its own, as its package is partly in C.
     """
 
     module: str
     called: str
     package: str | None = None
     extra: str = ""
-    apart: bool = False
+    in_other_process: bool = False
 
     @property
     def is_binary(self) -> bool:
@@ -45,15 +45,15 @@ FORMATS: Mapping[tuple[str, ...], Format] = {
     (".csv", ".tsv", ".txt", ".dat", ".log", ".lvm", ".asc", ".prn"): Format("text.delimited", "table of text"),
     (".json", ".jsonl", ".ndjson"): Format("json_rows", "JSON file"),
     (".npz", ".npy"): Format("numpy_arrays", "NumPy file"),
-    (".mat",): Format("matlab", "MATLAB file", apart=True),  # version 7.3 as HDF5
-    (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "h5py", "hdf5", apart=True),
-    (".mf4", ".mdf"): Format("mdf", "MDF file", "asammdf", "mdf4", apart=True),
+    (".mat",): Format("matlab", "MATLAB file", in_other_process=True),  # version 7.3 as HDF5
+    (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "h5py", "hdf5", in_other_process=True),
+    (".mf4", ".mdf"): Format("mdf", "MDF file", "asammdf", "mdf4", in_other_process=True),
     (".ulg",): Format("ulog", "PX4 log", "pyulog", "px4"),
-    (".parquet",): Format("parquet", "Parquet file", "pyarrow", "parquet", apart=True),
+    (".parquet",): Format("parquet", "Parquet file", "pyarrow", "parquet", in_other_process=True),
     (".mcap",): Format("bags.mcap", "MCAP file", "mcap", "ros"),
     (".db3", ".bag"): Format("bags.ros_bag", "ROS bag", "rosbags", "ros"),
     (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods"): Format(
-        "spreadsheet", "workbook", "python_calamine", "excel", apart=True
+        "spreadsheet", "workbook", "python_calamine", "excel", in_other_process=True
     ),
     (".tdms",): Format("tdms", "TDMS file", "nptdms", "tdms"),
 }
@@ -125,8 +125,8 @@ def read(path: Path, asked: TextLayout) -> Contents:
     if entry.package and not is_installed(entry.package):
         raise missing(entry.package, entry.extra, path)
     try:
-        if entry.apart:
-            return apart.read(entry.module, path, entry.called)
+        if entry.in_other_process:
+            return other_process.read(entry.module, path, entry.called)
         return cast(Reader, import_module(f"recordings.formats.{entry.module}")).read(path, asked)
     except BadInput as error:
         raise _of_another_kind(path, entry) or error from error

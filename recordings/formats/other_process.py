@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def read(module: str, path: Path, called: str) -> Contents:
     """What `recordings.formats.MODULE` reads at `path`; raises its BadInput, and one where it ends before it answers."""
-    command = [sys.executable, "-P", "-m", "recordings.formats.apart", module, str(path)]
+    command = [sys.executable, "-P", "-m", "recordings.formats.other_process", module, str(path)]
     places = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     done = subprocess.run(command, capture_output=True, check=False, env={**os.environ, "PYTHONPATH": places})
     if done.returncode:
