@@ -288,6 +288,11 @@ SAME_PLACE = Limit(
 )
 OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the library's", DEVELOPMENT)
 
+MOST_FORESEEN = Count(
+    16, "explanations", "by evidence, of which it is asked how they predict: of 58 right names one had a lower rank"
+)
+LEAST_OWN_SHARE = Limit(1e-3, "share of a form", "that must not be a mixture of forms taken already")
+
 # What other logs say (decide)
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
 LIKELIER_THAN_NOT = Limit(0.5, "probability", "likelier than all else together")
@@ -336,8 +341,45 @@ COLUMNS_REFUSED = Limit(
     "shows 65 to 6100, the yaw of a Quanser Aero as it is 45; inputs of another run 43, rows backwards 404",
 )
 
+# What the improved plant does in a closed loop (validate)
+ASTRAY_S = Limit(1.0, "s", "so long in all a flight may be further from the log than the log's own range")
+
+# What to record next (experiment)
+LEAST_AT_STAKE = Limit(0.02, "probability", "that a hypothesis must have, and that must be at stake")
+LEADING = Count(3, "hypotheses", "that a run is to tell apart: time")
+SURELY_APART = Limit(5.0, "standard deviations", "more of them tell hardly more")
+ENOUGH_APART = Limit(3.0, "standard deviations", "fewer of them tell nothing apart")
+EFFORT = Limit(0.2, "share of a sure separation", "that an experiment of effort 1 costs")
+BEYOND_SURE = Limit(
+    0.05,
+    "share of a sure separation",
+    "that each factor of ten beyond it is worth: no model is so right that the noise alone decides",
+)
+NEAR_LIMITS_SHARE = Limit(0.3, "share of a sure separation", "that a run costs which leaves the limits")
+MOST_CLIPPED = Limit(0.05, "share of the samples", "of a plan that may ask for more than an input can give")
+INPUT_FLOOR = Limit(0.02, "share of an input's range", "less is no outcome to look for")
+OUTPUT_FLOOR = Limit(3.0, "encoder steps", "less is no outcome to look for")
+
 # What is told beside it (explain)
 IMITATED = Limit(0.995, "share of a signature", "that the plant's own parameters imitate, for a sentence")
+WHOLE_ROWS_SD = Limit(
+    3.0,
+    "standard deviations",
+    "within so many a delay is one of whole rows, which the log may have made: 99.7 % of estimates lie nearer to what they estimate",
+)
+BELIEVED = Limit(0.6, "coherence", "below which a frequency response is not read", "Tischler and Remple (2012)")
+SURE_DEVIATIONS = Limit(3.0, "standard deviations", "that an answer's error must be from none")
+LEAST_POWER_SHARE = Limit(
+    1e-3, "share of the power of an output's modelled answers", "an input below is not there to move it"
+)
+KNOWN_TO = Limit(0.25, "share of a response", "to which it must be known for its band to be named")
+LEAST_LISTED_SHARE = Limit(0.02, "share of the gap", "smaller ones of a time, region or band are not listed")
+LEAST_PLACE_SHARE = Limit(0.005, "share of the gap", "smaller ones of a place are not listed")
+MOST_TERMS = Count(3, "terms", "of the form that sparse regression suggests: more are no form that one reads")
+NATS_PER_TERM = Limit(
+    6.0, "nats", "that a term must gain: a number, and the choice of its form among some three hundred"
+)
+FURTHER_TERM_SHARE = Limit(0.1, "share of the gain so far", "that a further term must add")
 
 
 def table() -> Iterator[tuple[str, Decides]]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from diagnosis import decisions
 from diagnosis.decide.idle import one_less
 from diagnosis.decide.weighing import Explanations, Weighed
 from diagnosis.decisions import held_against
@@ -10,7 +11,6 @@ from diagnosis.validate.fitted_logs import FittedLogs
 from jobs.thread_map import thread_map
 from records.reasons import Decision
 
-MOST_FORESEEN = 16  # explanations, by evidence: of 58 right names one had a lower rank
 TOLD_FROM = 0.02  # probability: of less probable ones no rule is told
 
 
@@ -22,7 +22,7 @@ def foreseen(logs: FittedLogs, explanations: Explanations) -> dict[FittedHypothe
     What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off. Those with
     less evidence than the MOST_FORESEEN most evident are not asked.
     """
-    asked = sorted(explanations.named, key=lambda entry: -entry.evidence)[:MOST_FORESEEN]
+    asked = sorted(explanations.named, key=lambda entry: -entry.evidence)[: decisions.MOST_FORESEEN]
     fewer = [other for entry in asked for other in one_less(entry, explanations.named)]
     asked = list(dict.fromkeys([*asked, *fewer, *([] if explanations.beyond is None else [explanations.beyond])]))
     plain, readings = explanations.nominal.fit.hypothesis, logs.readings

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
 from diagnosis.experiment.menu import Plan, plans, rooms
 from diagnosis.experiment.simulated_experiment import (
@@ -23,19 +24,8 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
-LEAST_AT_STAKE = 0.02  # of probability that a hypothesis must have, and that must be at stake
-LEADING = 3
-SURELY_APART, ENOUGH_APART = (
-    5.0,
-    3.0,
-)  # standard deviations: more than these tell no more, fewer than these tell nothing
-EFFORT = 0.2  # of what a sure separation is worth, for an experiment of effort 1
-BEYOND = 0.05  # likewise, for each factor of ten beyond SURELY_APART: no model is so right that the noise alone decides
-NEAR_LIMITS_SHARE = 0.3  # likewise for one that leaves the limits
 LONGEST_PERIOD_S = 0.02
-INPUT_FLOOR = 0.02  # of an input's range: less than that is no outcome to look for
 NO_EXPERIMENT = "none of the menu"
-OUTPUT_FLOOR = 3.0  # encoder steps, likewise
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,13 +45,14 @@ class Trial:
 def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     """The run that separates most of what is undecided, with the outcome to expect; None where nothing is, or nothing can be flown."""
     ranked = zip(weighed.fitted, weighed.probabilities, strict=True)
-    leading = [(fitted, probability) for fitted, probability in ranked if probability > LEAST_AT_STAKE][:LEADING]
+    likely = [(fitted, probability) for fitted, probability in ranked if probability > decisions.LEAST_AT_STAKE]
+    leading = likely[: decisions.LEADING]
     pairs = {
         (a, b): leading[a][1] * leading[b][1]
         for a, b in combinations(range(len(leading)), 2)
         if set(leading[a][0].effects) != set(leading[b][0].effects)
     }
-    if sum(pairs.values()) < LEAST_AT_STAKE:
+    if sum(pairs.values()) < decisions.LEAST_AT_STAKE:
         return None
     fitted = [fitted for fitted, _ in leading]
     period_s = period_of(case)
@@ -91,7 +82,7 @@ def _trial(
             return None
         for b in (b for one, b in pairs if one == a):
             other = missed(data, fitted[b].fit, plan, noisy)
-            z[a, b] = 2.0 * SURELY_APART if other is None else float(np.sqrt(max(other - own, 0.0)))
+            z[a, b] = 2.0 * decisions.SURELY_APART if other is None else float(np.sqrt(max(other - own, 0.0)))
     return Trial(plan, good, z)
 
 
@@ -112,23 +103,24 @@ def _worth(trial: Trial, pairs: Mapping[tuple[int, int], float]) -> tuple[float,
     """What a trial decides, in units of the probability at stake, less its effort; then the separation itself."""
     stake = sum(pairs.values())
     decided = sum(p * _decided(trial.z[pair]) for pair, p in pairs.items()) / stake
-    cost = EFFORT * trial.plan.effort + (0.0 if trial.within_limits else NEAR_LIMITS_SHARE)
+    cost = decisions.EFFORT * trial.plan.effort + (0.0 if trial.within_limits else decisions.NEAR_LIMITS_SHARE)
     return decided - cost, min(trial.z.values())
 
 
 def _decided(z: float) -> float:
-    return min(z / SURELY_APART, 1.0) ** 2 + BEYOND * float(np.log10(max(z / SURELY_APART, 1.0)))
+    sure = z / decisions.SURELY_APART
+    return min(sure, 1.0) ** 2 + decisions.BEYOND_SURE * float(np.log10(max(sure, 1.0)))
 
 
 def _told(
     case: Case, best: Trial, fitted: Sequence[FittedHypothesis], pairs: Mapping[tuple[int, int], float]
 ) -> Mapping[str, Any]:
-    first = max(pairs, key=lambda pair: pairs[pair] * min(best.z[pair], SURELY_APART) ** 2)
+    first = max(pairs, key=lambda pair: pairs[pair] * min(best.z[pair], decisions.SURELY_APART) ** 2)
     names = [_name(entry) for entry in fitted]
     apart = best.z[first]
     split = {True: list[str](), False: list[str]()}
     for a, b in pairs:
-        split[best.z[a, b] >= ENOUGH_APART].append(f"{names[a]} from {names[b]}")
+        split[best.z[a, b] >= decisions.ENOUGH_APART].append(f"{names[a]} from {names[b]}")
     return {
         "experiment": best.plan.name if split[True] else NO_EXPERIMENT,
         "instruction": best.plan.instruction if split[True] else "no run of this rig's menu tells what is left apart",
@@ -149,7 +141,7 @@ def _outcome(case: Case, trial: Trial, pair: tuple[int, int], names: Sequence[st
     """The expected outcome in one sentence with numbers."""
     a, b = pair
     apart = trial.z[pair]
-    if apart < ENOUGH_APART:
+    if apart < decisions.ENOUGH_APART:
         return (
             f"no run of the menu tells {names[a]} from {names[b]}: the best of them ({trial.plan.name}) leaves them "
             f"{apart:.1f} standard deviations of the noise apart"
@@ -178,10 +170,10 @@ def _part(case: Case, column: str) -> str:
 def _floors(case: Case) -> dict[str, float]:
     """What a reader can see of each column: some encoder steps, a share of an input's range."""
     model, bound = case.library.bound.model, case.library.bound
-    found = {name: OUTPUT_FLOOR * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
+    found = {name: decisions.OUTPUT_FLOOR * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
     for variable in model.inputs:
         low, high = bound.commands(variable)
-        found[str(variable)] = INPUT_FLOOR * (high - low)
+        found[str(variable)] = decisions.INPUT_FLOOR * (high - low)
     return found
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.experiment.menu import plans
-from diagnosis.experiment.next_experiment import EFFORT, law_of, period_of
+from diagnosis.experiment.next_experiment import law_of, period_of
 from diagnosis.experiment.simulated_experiment import recorded, setting, simulate_experiment
 from diagnosis.fit.gauss_newton import size_scale
 from diagnosis.hypothesis.case import Case
@@ -27,8 +27,8 @@ def revealing_experiment(case: Case, hypothesis: Hypothesis) -> Mapping[str, Any
         if flown is None:
             continue
         seen = _seen(recorded(there, flown), hypothesis, names)
-        if seen * (1.0 - EFFORT * plan.effort) > worth:
-            best, worth, shown = (plan, flown), seen * (1.0 - EFFORT * plan.effort), seen
+        if seen * (1.0 - decisions.EFFORT * plan.effort) > worth:
+            best, worth, shown = (plan, flown), seen * (1.0 - decisions.EFFORT * plan.effort), seen
     if best is None:
         return None
     plan, flown = best

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.experiment.menu import Plan, gravity_parameters
 from diagnosis.experiment.stand_in import StandIn, steered
 from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
@@ -26,7 +27,6 @@ from sim.start import start_state
 
 Array = NDArray[np.float64]
 GONE = 1e-9  # of gravity's moment where the rig is turned
-MOST_CLIPPED = 0.05  # share of the samples that may ask for more than an input can give
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +85,7 @@ def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypoth
         locked=plan.locked,
     )
     clipped = np.any((u <= law.low) | (u >= law.high), axis=1)
-    kept = plan.off.any() or np.mean(clipped) <= MOST_CLIPPED
+    kept = plan.off.any() or np.mean(clipped) <= decisions.MOST_CLIPPED
     return SimulatedExperiment(log, bool(kept and _off_the_stops(case, plan, x)))
 
 

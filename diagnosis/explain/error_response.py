@@ -15,6 +15,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import by_step, value_of
 from diagnosis.explain.spectra import BANDS_HZ, NO_POWER, coherence, cross_power, power
@@ -25,9 +26,6 @@ from records.diagnosis import ErrorResponse
 Array = NDArray[np.float64]
 ByFlight = Sequence[Array]
 RESPONSE_MEMORY_S = 0.6  # of the filter sought: errors that last longer show as errors of slow answers
-BELIEVED = 0.6  # coherence below which a frequency response is not read (Tischler and Remple 2012)
-SURE_DEVIATIONS = 3.0  # standard deviations that an error must be from none
-LEAST_POWER_SHARE = 1e-3  # of the power of an output's modelled answers: an input that is not there to move it
 
 
 def error_responses(linearisation: Linearisation) -> tuple[ErrorResponse, ...]:
@@ -40,7 +38,7 @@ def error_responses(linearisation: Linearisation) -> tuple[ErrorResponse, ...]:
             continue
         own = {u: [part[:, slot] for part in parts] for u, parts in answers.items()}
         strength = {u: sum(float(np.sum(part[:, 0] ** 2)) for part in parts) for u, parts in own.items()}
-        moving = {u: own[u] for u in own if strength[u] > LEAST_POWER_SHARE * max(strength.values())}
+        moving = {u: own[u] for u in own if strength[u] > decisions.LEAST_POWER_SHARE * max(strength.values())}
         if moving:
             found += _of_output(
                 linearisation, output, moving, [part[:, slot] for part in _by_flight(linearisation, linearisation.w)]
@@ -63,10 +61,10 @@ def _of_output(
         own = slice(place * parts[0].shape[1], (place + 1) * parts[0].shape[1])
         at_once = [part[:, 0] for part in parts]
         read = cross_power(at_once, parts, steps_s).conj() / np.maximum(power(at_once, steps_s), NO_POWER)[:, None]
-        for band in np.flatnonzero((believed > BELIEVED) & (np.array(BANDS_HZ[:-1]) < nyquist_Hz)).tolist():
+        for band in np.flatnonzero((believed > decisions.BELIEVED) & (np.array(BANDS_HZ[:-1]) < nyquist_Hz)).tolist():
             error = complex(read[band] @ taps[own])
             sd = float(np.sqrt((read[band] @ covariance[own, own] @ read[band].conj()).real))
-            if abs(error) > SURE_DEVIATIONS * sd:
+            if abs(error) > decisions.SURE_DEVIATIONS * sd:
                 low, high = BANDS_HZ[band : band + 2]
                 yield ErrorResponse(
                     output, u, low, min(high, nyquist_Hz), abs(error), sd, float(np.angle(error)), float(believed[band])

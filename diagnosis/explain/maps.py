@@ -5,14 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.explain.spectra import BANDS_HZ, averages, coherence, power
 from diagnosis.hypothesis.case import Case
 from records.diagnosis import Band, Region, Span
 
 Array = NDArray[np.float64]
 SPANS, REGIONS = 12, 8
-LEAST_LISTED_SHARE = 0.02
-KNOWN_TO = 0.25  # of a response, to which it must be known for its band to be named
 
 
 def removed_energy(before: Sequence[Array], after: Sequence[Array]) -> list[Array]:
@@ -29,7 +28,7 @@ def time_map(case: Case, energy: Sequence[Array]) -> tuple[Span, ...]:
     rows = [
         Span(float(edges[i]), float(edges[i + 1]), share)
         for i, share in enumerate(shares)
-        if share > LEAST_LISTED_SHARE
+        if share > decisions.LEAST_LISTED_SHARE
     ]
     return tuple(sorted(rows, key=lambda row: -row.share))
 
@@ -65,10 +64,10 @@ def band_map(case: Case, before: Sequence[Array], after: Sequence[Array]) -> tup
         return ()
     shares = strength / strength.sum()
     found = np.max([coherence(error, part, steps_s) for error, part in zip(errors, gone, strict=True)], axis=0)
-    supported = found > 1.0 / (1.0 + 2.0 * (averages(errors[0], steps_s) - 1.0) * KNOWN_TO**2)
+    supported = found > 1.0 / (1.0 + 2.0 * (averages(errors[0], steps_s) - 1.0) * decisions.KNOWN_TO**2)
     rows = [
         Band(BANDS_HZ[i], BANDS_HZ[i + 1], float(shares[i]), float(found[i]))
-        for i in np.flatnonzero(supported & (shares > LEAST_LISTED_SHARE)).tolist()
+        for i in np.flatnonzero(supported & (shares > decisions.LEAST_LISTED_SHARE)).tolist()
     ]
     return tuple(sorted(rows, key=lambda row: -row.share))
 

@@ -3,12 +3,11 @@
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
+from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.search.beam import Search, certainties
 from records.diagnosis import PlaceShare
-
-LEAST_PLACE_SHARE = 0.005
 
 
 def place_shares(
@@ -27,7 +26,7 @@ def place_shares(
         found[place] += weighed.retune / len(retuned_places)
     total = sum(found.values())
     kept = (
-        {place: share / total for place, share in found.items() if share > LEAST_PLACE_SHARE * total}
+        {place: share / total for place, share in found.items() if share > decisions.LEAST_PLACE_SHARE * total}
         if total > 0.0
         else {}
     )

@@ -7,16 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.unknown import LEAST_OWN_SHARE
 from diagnosis.detect.detection import MEAN_GAIN, FormScores
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.explain.curve import axis_of_target
 
 Array = NDArray[np.float64]
-MOST_TERMS = 3
-NATS_PER_TERM = 6.0  # a number, and the choice of its form among some three hundred
-FURTHER_TERM_SHARE = 0.1  # of the gain so far that a further term must add
 
 
 @dataclass(frozen=True)
@@ -41,10 +37,10 @@ def sparse_form(by_form: FormScores, place: str) -> tuple[Term, ...]:
     """
     chosen: list[int] = []
     total = 0.0
-    while len(chosen) < MOST_TERMS:
+    while len(chosen) < decisions.MOST_TERMS:
         members = _members(by_form, place, chosen)
         gains = _gains(by_form, chosen, members)
-        if not len(gains) or np.max(gains) < max(NATS_PER_TERM, FURTHER_TERM_SHARE * total):
+        if not len(gains) or np.max(gains) < max(decisions.NATS_PER_TERM, decisions.FURTHER_TERM_SHARE * total):
             break
         total += float(np.max(gains))
         chosen.append(members[int(np.argmax(gains))])
@@ -107,6 +103,5 @@ def _gains(by_form: FormScores, chosen: Sequence[int], members: Sequence[int]) -
         share = np.linalg.solve(gram[np.ix_(chosen, chosen)], cross)
         left, pull = norm - np.sum(cross * share, axis=0), pull - share.T @ score[list(chosen)]
     usual = np.maximum(1.0, by_form.null_gain[list(members)] / MEAN_GAIN)
-    return (
-        np.where(left > LEAST_OWN_SHARE * norm, 0.5 * pull**2 / np.maximum(left, LEAST_OWN_SHARE * norm), 0.0) / usual
-    )
+    least = decisions.LEAST_OWN_SHARE * norm
+    return np.where(left > least, 0.5 * pull**2 / np.maximum(left, least), 0.0) / usual

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.explain.improved import estimates
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
@@ -11,7 +12,6 @@ from records.diagnosis import Estimate, Firmware
 from records.reasons import Note
 from sim.effect import Effect, Role
 
-SURE_SD = 3.0  # within so many sd a delay is one of whole rows: 99.7 % of estimates lie nearer to what they estimate
 COUNTED = {
     1: ("one row", "one sample period"),
     2: ("two rows", "two sample periods"),
@@ -38,7 +38,7 @@ def whole_rows(case: Case, chosen: FittedHypothesis, firmware: Firmware | None) 
 
 def _rows(late: Estimate, period_s: float) -> int:
     """How many whole sample periods an estimate is, 0 where it is none or too unsure to be told from half of one."""
-    rows, within_s = round(late.value / period_s), SURE_SD * late.sd
+    rows, within_s = round(late.value / period_s), decisions.WHOLE_ROWS_SD * late.sd
     sure = within_s < period_s / 2.0 and abs(late.value - rows * period_s) <= within_s
     return rows if sure and rows in COUNTED else 0
 

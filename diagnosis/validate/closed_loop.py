@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.validate.prediction import settled_after_s
@@ -26,7 +27,6 @@ MODEL_VARIANTS = ("nominal", "before", "after")
 SEEDS = (1, 2)  # flights of the floor
 BLOCK_S = 3.0
 MOST_SAMPLES = 12_000  # of each log: two minutes at 100 Hz tell what an hour would
-ASTRAY_S = 1.0  # so long in all a flight may be further from the log than the log's own range
 REFLIGHT_DRAWS, REFLIGHT_SEED = 500, 7
 
 
@@ -174,7 +174,7 @@ def _astray(entry: Reflown, variant: str, outputs: int) -> bool:
     step_s = float(np.median(np.diff(entry.t_s)))
     far = np.any(np.abs(error) > entry.reach[:outputs], axis=1)
     lost = entry.present & ~np.isfinite(entry.errors[variant][:, -1])
-    return bool(lost.any() or far.sum() * step_s > ASTRAY_S)
+    return bool(lost.any() or far.sum() * step_s > decisions.ASTRAY_S)
 
 
 def _numbers(t_s: Array) -> NDArray[np.int64]:
