@@ -46,6 +46,12 @@ def test_it_comes_up_at_64_MHz_with_every_output_off(desk):
     assert [desk.board.gpio("A").mode >> 2 * pin & 3 for pin in (0, 1, 2, 3, 6, 7, 8, 9)] == [2] * 8
 
 
+def test_a_seal_takes_the_cycles_that_the_page_says(float32):
+    # Truth: docs/faults.md, some 700 cycles, within a tenth.
+    board = EmulatedBoard(float32)
+    assert board.call("path_seal", board.scratch_address()).cycles_flash == pytest.approx(700, rel=0.1)
+
+
 def test_it_starts_from_the_serial_boot_loader_as_from_a_reset(desk):
     # The loader leaves its own vectors, system memory at address 0 and a clock of 24 MHz from the PLL.
     desk.board.start_from_boot_loader(STM32G071.flash.start)
