@@ -13,6 +13,9 @@ OF_THE_CODE: dict[str, dict[str, str]] = {
     "docs/diagnosis.md": {},
     "docs/log-check.md": {"161700": "triples of a hundred"},
     "docs/quality.md": {},
+    "docs/json.md": {},
+    "docs/other-firmware.md": {},
+    "docs/watch.md": {"0.03": "deg, what an encoder's step leaves of one flight", "1234": "rows of an example"},
     "docs/firmware.md": {"32": "bits of the line's checksum, and of a word of either arithmetic"},
     "docs/hardware.md": {
         "3.3": "V, the supply of the chip's pins: STM32G071RB, data sheet",
