@@ -60,7 +60,7 @@ def place(case: Case, name: str) -> int:
     return case.free.tolist().index(index(case.library.bound, name))
 
 
-def test_the_strain_is_that_of_the_joint_normal_law(case: Case) -> None:
+def test_the_prior_chi_squared_is_that_of_the_joint_normal_law(case: Case) -> None:
     # Truth: (1, 1) under correlation r is 2 / (1 + r) squared deviations away, (1, -1) is 2 / (1 - r).
     for sign in (1.0, -1.0):
         theta = np.zeros(len(case.free))

@@ -92,7 +92,8 @@ def test_two_processes_and_their_threads_on_an_empty_cache_get_the_same_filters(
     left = sorted(path.name.split("-")[0] for path in (tmp_path / "host").iterdir() if "filter" in path.name)
     assert left == filters * ["filter"]
     assert not [path for path in (tmp_path / "host").iterdir() if path.is_dir()]
-    assert not list((tmp_path / "kits").glob(".*"))
+    notes = {path.suffix for path in (tmp_path / "effect_libraries").iterdir()}
+    assert notes == {".json"}  # whole ones alone
 
 
 @pytest.mark.soak

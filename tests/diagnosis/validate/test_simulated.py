@@ -68,7 +68,7 @@ def test_a_lagging_sensor_begins_where_the_arm_is(plant: BoundPlant, case: Case)
     assert rig.measured()[0] == pytest.approx(0.3, abs=STEP_RAD)
 
 
-def test_unrest_shakes_by_its_seed_and_locks_hold(plant: BoundPlant, case: Case, law: HostLaw) -> None:
+def test_process_noise_shakes_by_its_seed_and_locks_hold(plant: BoundPlant, case: Case, law: HostLaw) -> None:
     x0 = equilibrium(plant, 0.0).x0
     restless = nominal_hypothesis(case, -1.0)
     one, same, other = (readings(law, Flown(case, restless, x0, seed=seed), 200) for seed in (1, 1, 2))
