@@ -26,9 +26,9 @@ from controllers.fuzzy_sets import (
     AZIMUTH,
     ELEVATION,
     ERROR_LABELS,
-    FAR,
     FILTER_S,
     RATE_LABELS,
+    SHOULDER_FOOT,
     Trapezoid,
     Wording,
     error_sets,
@@ -197,8 +197,8 @@ def rate_of(label: str, error: str) -> int:
 def slopes_of(sides: Trapezoid) -> Slopes:
     """(r_0, r_1, f_0, f_1) of the trapezoid that rises from a to b and falls from c to d."""
     a, b, c, d = sides
-    rising = (1.0, 0.0) if b <= -FAR else (-a / (b - a), 1.0 / (b - a))
-    falling = (1.0, 0.0) if c >= FAR else (d / (d - c), -1.0 / (d - c))
+    rising = (1.0, 0.0) if b <= -SHOULDER_FOOT else (-a / (b - a), 1.0 / (b - a))
+    falling = (1.0, 0.0) if c >= SHOULDER_FOOT else (d / (d - c), -1.0 / (d - c))
     return (*rising, *falling)
 
 

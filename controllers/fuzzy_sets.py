@@ -43,7 +43,7 @@ from dataclasses import dataclass
 FILTER_S = 0.015  # of the derivative: one sample and a half; one encoder step in one sample reads 6 deg/s
 
 Trapezoid = tuple[float, float, float, float]
-FAR = 1e6  # the foot of a shoulder
+SHOULDER_FOOT = 1e6  # the foot of a shoulder
 
 # Elevation error [deg], Fig. 7; the azimuth's, Fig. 10, has the same labels over the same zoom.
 ERROR_LABELS = ("N", "NB", "NM", "NS", "ZE", "PS", "PM", "PB", "P")
@@ -73,8 +73,8 @@ def error_sets(small: float, medium: float, big: float, some_of_it: float, all_o
     half = {
         "PS": (0.0, small, small, medium),
         "PM": (small, medium, medium, big),
-        "PB": (medium, big, FAR, 2.0 * FAR),
-        "P": (some_of_it, all_of_it, FAR, 2.0 * FAR),
+        "PB": (medium, big, SHOULDER_FOOT, 2.0 * SHOULDER_FOOT),
+        "P": (some_of_it, all_of_it, SHOULDER_FOOT, 2.0 * SHOULDER_FOOT),
     }
     mirrored = {f"N{name[1:]}": _mirrored(sides) for name, sides in half.items()}
     return {**mirrored, **half, "ZE": (-small, 0.0, 0.0, small)}
@@ -89,16 +89,16 @@ def _row(text: str) -> tuple[str, ...]:
     return tuple(text.split())
 
 
-RATE = {"N": (-2.0 * FAR, -FAR, -10.0, 0.0), "P": (0.0, 10.0, FAR, 2.0 * FAR)}
+RATE = {"N": (-2.0 * SHOULDER_FOOT, -SHOULDER_FOOT, -10.0, 0.0), "P": (0.0, 10.0, SHOULDER_FOOT, 2.0 * SHOULDER_FOOT)}
 OVERLAP_DEG = 2.0
 
 ELEVATION = Wording(
     regions={
-        "N45-30": (-2.0 * FAR, -FAR, -30.0 - OVERLAP_DEG, -30.0 + OVERLAP_DEG),
+        "N45-30": (-2.0 * SHOULDER_FOOT, -SHOULDER_FOOT, -30.0 - OVERLAP_DEG, -30.0 + OVERLAP_DEG),
         "N30-20": (-30.0 - OVERLAP_DEG, -30.0 + OVERLAP_DEG, -20.0 - OVERLAP_DEG, -20.0 + OVERLAP_DEG),
         "N20-P10": (-20.0 - OVERLAP_DEG, -20.0 + OVERLAP_DEG, 10.0 - OVERLAP_DEG, 10.0 + OVERLAP_DEG),
         "P10-20": (10.0 - OVERLAP_DEG, 10.0 + OVERLAP_DEG, 20.0 - OVERLAP_DEG, 20.0 + OVERLAP_DEG),
-        "P20-45": (20.0 - OVERLAP_DEG, 20.0 + OVERLAP_DEG, FAR, 2.0 * FAR),
+        "P20-45": (20.0 - OVERLAP_DEG, 20.0 + OVERLAP_DEG, SHOULDER_FOOT, 2.0 * SHOULDER_FOOT),
     },
     error=error_sets(1.0, 6.0, 20.0, -20.0, 20.0),
     rate=RATE,
@@ -133,7 +133,7 @@ ELEVATION = Wording(
 )  # fmt: skip
 
 AZIMUTH = Wording(
-    regions={"N135-P135": (-2.0 * FAR, -FAR, FAR, 2.0 * FAR)},
+    regions={"N135-P135": (-2.0 * SHOULDER_FOOT, -SHOULDER_FOOT, SHOULDER_FOOT, 2.0 * SHOULDER_FOOT)},
     error=error_sets(3.0, 10.0, 30.0, 0.0, 10.0),
     rate=RATE,
     outputs={

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 # 2 is the usual bound. With one set of gains from -40 to 40 deg the CE150's elevation cannot be held below 2.5 (its pole at +40 deg is
 # at +2.2 rad/s, its rotor's at -7), so it gets 3; beyond, a loop is not held but hangs on.
 SENSITIVITIES = (2.0, 3.0)
-FAR = 20.0  # of |1/(1 + L)|: no loop to begin from
+NO_LOOP = 20.0  # of |1/(1 + L)|: no loop to begin from
 DERIVATIVE_SHARE = 10.0  # Td / Tf
 FREQUENCIES = 160
 BISECTIONS = 12
@@ -192,7 +192,7 @@ def _largest_integral(loop: _Loop, k_p: float, k_d: float, bound: float) -> floa
 
 
 def _sensitivity(loop: _Loop, k_p: float, k_i: float, k_d: float) -> float:
-    """The largest |1/(1 + C G)| over frequencies and operating points; above FAR where a loop is unstable or faster than wished, the
+    """The largest |1/(1 + C G)| over frequencies and operating points; above NO_LOOP where a loop is unstable or faster than wished, the
     farther the higher, so that a search comes back from there."""
     filter_s = _filter_s(loop, k_p, k_d)
     g = lag_gain(filter_s, loop.Ts_s)
@@ -200,12 +200,12 @@ def _sensitivity(loop: _Loop, k_p: float, k_i: float, k_d: float) -> float:
     L = loop.G * C
     too_fast = float(np.max(np.abs(L[:, loop.is_fast])))
     if too_fast >= 1.0:
-        return FAR * too_fast
+        return NO_LOOP * too_fast
     largest = float(np.max(np.abs(1.0 / (1.0 + L))))
-    if largest > FAR:
+    if largest > NO_LOOP:
         return largest
     radius = _radius(loop, k_p, k_i, k_d / filter_s, g)
-    return largest if radius < 1.0 else FAR * radius
+    return largest if radius < 1.0 else NO_LOOP * radius
 
 
 def _radius(loop: _Loop, k_p: float, k_i: float, k_f: float, g: float) -> float:

@@ -16,7 +16,7 @@ from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, 
 from diagnosis.decide.idle import shares_of, without_idle
 from diagnosis.decide.rows import demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
-from diagnosis.decide.weighing import Explanations, Weighed, first_share, likeliest, weigh
+from diagnosis.decide.weighing import Explanations, Weighed, chosen_of, first_share, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.detect.detection import form_scores
 from diagnosis.detect.linearisation import linearised
@@ -164,7 +164,7 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     doubts = doubt(seen.case, found, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *ranked.notes)
     share = first_share(seen.case, weighed)
-    chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted, share)
+    chosen, named_rules = chosen_of(weighed, retuned, None if beyond is None else beyond.fitted, share)
     seen = seen.because(*doubts.decisions, *named_rules)
     if holdout is not None:
         chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)

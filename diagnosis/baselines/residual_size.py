@@ -11,17 +11,17 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.simulate import simulate
 
-ALARM = 2.0  # residuals this many times those of the plant itself are a gap
+RESIDUAL_ALARM = 2.0  # residuals this many times those of the plant itself are a gap
 
 
 def by_residual_size(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis:
-    """A gap where an output's error exceeds ALARM times that of the nominal plant's own windows, at the axis of that output."""
+    """A gap where an output's error exceeds RESIDUAL_ALARM times that of the nominal plant's own windows, at the axis of that output."""
     windows = windows_of(bound, logs)
     ratio = _rms(errors(bound, windows)) / _rms(errors(bound, _own(bound, windows)))
     axes = [axis.name for axis in bound.model.axes]
     shares = ratio**2 / np.sum(ratio**2)
     places = sorted((PlaceShare(axes[k], float(share)) for k, share in enumerate(shares)), key=lambda p: -p.share)
-    gap = bool(np.max(ratio) > ALARM)
+    gap = bool(np.max(ratio) > RESIDUAL_ALARM)
     return Diagnosis(
         verdict="gap" if gap else "no gap",
         false_alarm_probability=None,

@@ -19,7 +19,7 @@ from sim.model import Axis
 
 KEPT = 0.15  # of the largest term: smaller ones are dropped
 ROUNDS = 10
-ALARM = 0.2  # share of the discrepancy that the terms must explain
+TERMS_ALARM = 0.2  # share of the discrepancy that the terms must explain
 
 VISCOUS = {"speed": "viscous"}  # a parameter of the plants, and so none of the library's effects
 
@@ -34,11 +34,11 @@ class Explained:
 
 
 def by_sparse_regression(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis:
-    """A gap where kept terms explain more than ALARM of an axis' discrepancy; its cause is the largest term's."""
+    """A gap where kept terms explain more than TERMS_ALARM of an axis' discrepancy; its cause is the largest term's."""
     axes = {axis.position: axis for axis in bound.model.axes}
     found = [_explained(bound, axes[position], output, logs) for position, _, output in measured_axes(bound.model)]
     best = max(found, key=lambda explained: explained.share)
-    gap = best.share > ALARM
+    gap = best.share > TERMS_ALARM
     effect = f"{best.axis}.{_causes().get(best.term, best.term)}"
     return Diagnosis(
         verdict="gap" if gap else "no gap",

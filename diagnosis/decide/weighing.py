@@ -181,7 +181,7 @@ def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
     return sorted(near, key=lambda entry: abs(entry.evidence - first.evidence))[:6]
 
 
-def likeliest(
+def chosen_of(
     weighed: Weighed, stated: FittedHypothesis, beyond: FittedHypothesis | None, share: float
 ) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
     """The most probable hypothesis or re-tune if it beats an unknown effect, else the plant as `stated`; `share` as of `first_share`."""

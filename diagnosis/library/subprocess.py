@@ -10,7 +10,7 @@ from typing import Any
 from toolchain.host import INTERRUPTED
 
 # The answer's way is kept clear of what imported code may print, which goes where errors go.
-ASKED = """
+PROGRAM = """
 import os, pickle, sys
 answer = os.fdopen(os.dup(1), "wb")
 os.dup2(2, 1)
@@ -31,7 +31,7 @@ def in_subprocess(work: Callable[..., Any], *items: Any) -> Any:
     """
     path = os.pathsep.join(filter(None, sys.path))
     done = subprocess.run(
-        [sys.executable, "-c", ASKED],
+        [sys.executable, "-c", PROGRAM],
         input=pickle.dumps((work, items)),
         capture_output=True,
         env={**os.environ, "PYTHONPATH": path},

@@ -21,7 +21,7 @@ from sim.substeps import LARGEST_STEP, fastest_rad_s
 Array = NDArray[np.float64]
 MOST = 64
 FOLLOWED = 1e-3  # of a channel's own motion: a start's prediction this near to that with half the step is good enough to fit from
-FAR = 1e6  # of all motion read: no plant goes so far within a window
+IMPOSSIBLE = 1e6  # of all motion read: no plant goes so far within a window
 SHIFT_SD = 0.1  # estimates that half the step would move by less than this are good enough to keep
 
 
@@ -39,7 +39,7 @@ def followed(run: Run) -> Run:
         if _near(run, before, after):
             break
         run, before = more, after
-    if not np.all(np.abs(before - run.y) < FAR * (np.ptp(run.y) + run.sd)):
+    if not np.all(np.abs(before - run.y) < IMPOSSIBLE * (np.ptp(run.y) + run.sd)):
         raise BadInput(
             "log", run.name, f"a prediction that leaves all bounds, in {MOST} steps per sample too",
             "a plant whose fastest part shows at this sample rate", "check its parameters, or leave that part out",

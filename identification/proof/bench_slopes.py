@@ -18,7 +18,7 @@ from sim.bind import BoundPlant
 Array = NDArray[np.float64]
 MOST_RUNS = 100
 MOST_OFF = 5.0  # times the start
-FAR, STEEP = 1e3, 1e6  # residuals and slopes of a run that leaves all bounds, as neither simulation has stops
+LOST_RESIDUAL, LOST_SLOPE = 1e3, 1e6  # of a run that leaves all bounds, as neither simulation has stops
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,9 +126,11 @@ def _fit(flight: FitProblem, of: Slopes) -> Fitted:
 
     def work() -> Array:
         found = least_squares(
-            lambda relative: np.clip(np.nan_to_num(np.asarray(residual(relative)), nan=FAR), -FAR, FAR),
+            lambda relative: np.clip(
+                np.nan_to_num(np.asarray(residual(relative)), nan=LOST_RESIDUAL), -LOST_RESIDUAL, LOST_RESIDUAL
+            ),
             first,
-            jac=lambda relative: np.clip(np.nan_to_num(np.asarray(slopes(relative))), -STEEP, STEEP),
+            jac=lambda relative: np.clip(np.nan_to_num(np.asarray(slopes(relative))), -LOST_SLOPE, LOST_SLOPE),
             bounds=(1.0 / MOST_OFF, MOST_OFF),
             method="trf",
             max_nfev=MOST_RUNS,

@@ -6,7 +6,7 @@ import pytest
 from controllers.equations.exact import Doubles
 from controllers.equations.frame import numbers_of
 from controllers.fuzzy import Fuzzy
-from controllers.fuzzy_sets import AZIMUTH, ELEVATION, ERROR_LABELS, FAR, Wording
+from controllers.fuzzy_sets import AZIMUTH, ELEVATION, ERROR_LABELS, SHOULDER_FOOT, Wording
 from sim.simulate import simulate
 from tests.controllers.rows import ce150, designed
 from verification.comparison.manoeuvres import FIGURES
@@ -53,8 +53,8 @@ def _mamdani(words: Wording, region: float, rate: float, error: float) -> float:
 
 def _degree(sides: tuple[float, float, float, float], x: float) -> float:
     a, b, c, d = sides
-    rising = 1.0 if b <= -FAR else (x - a) / (b - a)
-    falling = 1.0 if c >= FAR else (d - x) / (d - c)
+    rising = 1.0 if b <= -SHOULDER_FOOT else (x - a) / (b - a)
+    falling = 1.0 if c >= SHOULDER_FOOT else (d - x) / (d - c)
     return float(np.clip(min(rising, falling), 0.0, 1.0))
 
 

@@ -9,7 +9,7 @@ from twinlaw.pages.page import Section, Table
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE
 
 _PANELS = 4  # columns that are drawn
-_FAR = 30.0  # between the least bar and the largest, from which both are to be seen on a logarithmic scale alone
+_SCALE_RATIO = 30.0  # of the largest bar to the least, from which only a logarithmic scale shows both
 _ROOM = 1.15  # of the largest bar, for its number above it
 _COLOURS = (GREY, ORANGE, BLUE, GREEN)
 _KEYS = ("nominal", "before", "after", "floor")
@@ -84,7 +84,7 @@ def _four_bars(rms: Sequence[Mapping[str, float]], found: bool) -> tuple[Table, 
         # What has one unit has one scale, or bars of one length would not be errors of one size.
         alike = [scale * entry[other] for other in columns if shown(other)[1] == unit for entry in rms]
         low, high = min(alike), max(alike)
-        far = low > 0.0 and high > _FAR * low
+        far = low > 0.0 and high > _SCALE_RATIO * low
         axis = f"rms error of {name} {unit}".strip()
         panels.append(
             Bars(

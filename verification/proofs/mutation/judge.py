@@ -18,9 +18,9 @@ Bits = NDArray[Any]
 
 _STIMULI = {"float32": standard_stimuli, "fixed": fixed_stimuli}
 _SPECIAL = {"float32": SPECIAL_BITS, "fixed": SPECIAL_WORDS}
-_FAR = [[2**31 - 1, -(2**31)], [-(2**31), 2**31 - 1], [2**24 + 1, -(2**24) - 1]]
+_ENDS = [[2**31 - 1, -(2**31)], [-(2**31), 2**31 - 1], [2**24 + 1, -(2**24) - 1]]
 COUNTS = np.array(
-    [*([n, n] for n in range(-8192, 8193)), *_FAR], dtype=np.int32
+    [*([n, n] for n in range(-8192, 8193)), *_ENDS], dtype=np.int32
 )  # two turns either way, and far beyond
 
 # Of either sign: where a duty's factor is odd, one of them is half a tick.
