@@ -43,6 +43,14 @@ GRID_SHARE = Limit(
     "so much of a grid's evidence without noise: 0.3 to 0.7 with noise of a fifth of a step, 0.1 where a conversion leaves out counts",
     DEVELOPMENT,
 )
+GRID_IN_PHASE = Limit(
+    0.3, "share of the readings", "that are in phase on a grid: those of one of 1.5 counts without noise are 0.41"
+)
+GRID_OVERTONE = Limit(
+    0.8,
+    "share of the highest peak",
+    "a slower one as high is the grid's own: overtones of a grid that is read without noise are as high as it",
+)
 
 # Where a log begins (hypothesis)
 UNTOLD_S = Limit(

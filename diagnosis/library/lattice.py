@@ -16,8 +16,6 @@ Counts = NDArray[np.int64]
 NOISES = np.geomspace(0.03, 1.0, 8)[:, None]  # of (1), in counts
 STRAY = 0.01  # share of readings that may lie anywhere: a row that was put together from two
 PADDED, PEAKS = 8, 6  # points of the spectrum a cycle over all counts; its highest peaks are asked
-NEARLY_AS_HIGH = 0.8
-LOWEST = 0.3  # of all counts in phase: those of a grid of 1.5 counts without noise are 0.41
 AROUND = np.linspace(-1.0, 1.0, 81)
 # Time: a spectrum of all counts of a fine encoder took 24 s. Coarse grids are looked for first, in coarse units.
 WINDOW = 1 << 14  # units of the widest spectrum
@@ -96,7 +94,7 @@ def _peaks(counts: Counts, times: Counts, unit: int) -> list[float]:
     height = np.abs(np.fft.rfft(passes, points))
     slowest = int(decisions.MORE_THAN_ONE * points / span)
     height[:slowest] = 0.0  # of a single step between the extremes nobody knows that others are alike
-    height[height < LOWEST * times.sum()] = 0.0
+    height[height < decisions.GRID_IN_PHASE * times.sum()] = 0.0
     if unit > 1:
         height[points // FINEST :] = 0.0  # the next unit shows these better
     inner = np.flatnonzero(
@@ -104,7 +102,7 @@ def _peaks(counts: Counts, times: Counts, unit: int) -> list[float]:
     )
     ranked = inner[np.argsort(height[inner])[::-1]]
     # Overtones of a grid that is read without noise are as high as its own frequency, the lowest of them.
-    lowest = [place for place in inner if height[place] > NEARLY_AS_HIGH * height[ranked[0]]][:1]
+    lowest = [place for place in inner if height[place] > decisions.GRID_OVERTONE * height[ranked[0]]][:1]
     highest = np.array([*lowest, *ranked[:PEAKS]]) / points
     both = [f for peak in highest for f in (peak, 1.0 - peak)] if unit == 1 else highest.tolist()
     return [float(f) for f in both if f * decisions.MORE_THAN_ONE < 1.0]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from diagnosis.filter.filter_input import FilterInput, beginning, filter_input_of, late
+from diagnosis.library import lattice
 from diagnosis.library.effect_library import effect_library
 from diagnosis.library.lattice import coarse_step, grid_evidence
 from diagnosis.library.play import behind_play, pushing
@@ -100,6 +101,21 @@ def test_a_grid_so_coarse_that_few_points_of_it_are_read_is_found() -> None:
     read = STEP * np.round(coarse * np.round(angle / coarse) / STEP)
     assert len(np.unique(read)) < 7
     assert coarse_step(read, STEP) == pytest.approx(coarse, rel=3e-3)
+
+
+@pytest.mark.parametrize("constant", ["STRAY", "ROUNDED", "AS_GOOD"])
+@pytest.mark.parametrize("factor", [0.7, 1.4])
+def test_what_the_search_for_a_grid_keeps_to_itself_decides_nothing(
+    constant: str, factor: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Truth: a grid of 1.7 counts without noise and of 2.47 with it, one of 75.3 counts of which few points are read, and none."""
+    wave, noise = np.sin(np.linspace(0.0, 30.0, 4000)), np.random.default_rng(2).normal(0.0, 0.2 * STEP, 4000)
+    monkeypatch.setattr(lattice, constant, factor * getattr(lattice, constant))
+    for steps, angle in ((1.7, 1.2 * wave**3), (2.47, 1.2 * wave**3), (75.3, 0.35 + 0.25 * wave)):
+        grid = steps * STEP
+        read = STEP * np.round((grid * np.round(angle / grid) + (noise if steps == 2.47 else 0.0)) / STEP)
+        assert coarse_step(read, STEP) == pytest.approx(grid, rel=3e-3)
+    assert coarse_step(STEP * np.round(0.4 * wave / STEP), STEP) is None
 
 
 def test_a_swing_that_is_sampled_at_the_same_few_angles_has_no_grid() -> None:
