@@ -69,10 +69,22 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = gain_over(short, usual, fit)
-    if not is_told(gain):
+    if not (is_told(gain) and is_told(_gain_alone(short, best, fitted, gain))):
         return None
     alike = [other for other, own in found if is_as_good(own.log_posterior, fit.log_posterior)]
     return _either(best, alike), gain
+
+
+def _gain_alone(case: Case, wiring: Wiring, fitted: Callable[[Case], Fit], together: float) -> float:
+    """What another reading of the columns, which gains so many nats of all logs `together`, gains of each by itself: a slip is one in
+    every log, but a start that the model does not foresee looks like one where calmer logs keep the noise that is shared too small."""
+    if len(case.flights) == 1:
+        return together
+    alone = [case.with_flights([flight]) for flight in case.flights]
+    usual = thread_map(lambda own: fitted_or_none(own, fitted), alone)
+    read = thread_map(lambda own: fitted_or_none(_rewired(own, wiring), fitted), alone)
+    found = zip(alone, usual, read, strict=True)
+    return sum(gain_over(own, one, other) for own, one, other in found if one is not None and other is not None)
 
 
 def _blind_signs(case: Case, nominal: Fit) -> tuple[Note, ...]:
