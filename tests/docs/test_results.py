@@ -50,10 +50,12 @@ def test_a_result_is_what_its_commands_print(name: str) -> None:
     if name.startswith("real_") and not datasets_folder().is_dir():
         pytest.skip(f"no recordings in {datasets_folder()}: see recordings/datasets/registry.toml")
     # Within 5 %, or a thousandth: so far other processors may move a figure; a change of the program that the file missed moves it further.
+    # How far two flights differ hangs on which encoder step comes a row earlier in one of them, and that on the last digits: a fifth.
     told, stored = (dict(leaves(found)) for found in (json.loads(made(name)), result(name)))
     assert set(told) == set(stored)
     for key, value in stored.items():
-        assert told[key] == (pytest.approx(value, rel=0.05, abs=1e-3) if isinstance(value, float) else value), key
+        reach = 0.2 if ".flight_rms." in key else 0.05
+        assert told[key] == (pytest.approx(value, rel=reach, abs=1e-3) if isinstance(value, float) else value), key
 
 
 def leaves(found: Any, key: str = "") -> Iterator[tuple[str, Any]]:
