@@ -69,7 +69,9 @@ def limited(u: float, limit: float, w: float) -> float:
 
 
 def grip(v: float, v_s: float, e: float) -> float:
-    return exp(-((v / v_s) ** 2) / (1 + e * abs(v) / v_s))
+    """What is left at a speed of the friction above the level: 1 at rest, 1/e at v_s."""
+    x = abs(v) / v_s
+    return exp(-(x**2) * (1 + e) / (1 + e * x))
 
 
 def creeps(v: float, v_c: float) -> float:
