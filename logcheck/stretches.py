@@ -40,8 +40,10 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
     Half of a log's parts are spread evenly over it from its beginning to its end; the others are those of the rest in which outputs
     and inputs travel furthest.
     """
-    spare = sum(log.y.size for log in logs) // thresholds.ENOUGH_READINGS
+    spare = sum(len(log.t_s) for log in logs) // thresholds.ENOUGH_ROWS
     every = [max(min(_every(log, rate_rad_s), spare), 1) for log in logs]
+    if max(every, default=1) == 1 and sum(log.y.size for log in logs) <= thresholds.MOST_READINGS:
+        return Stretches(tuple(logs), tuple(names), tuple(used), (), tuple(names))
     kept = [_one_in(mask, factor) for mask, factor in zip(used, every, strict=True)]
     shown = [_thinned(log, rows) if factor > 1 else log for log, rows, factor in zip(logs, kept, every, strict=True)]
     parts: list[tuple[RunLog, str, Rows, str]] = []

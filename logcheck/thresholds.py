@@ -192,8 +192,8 @@ BESIDE_ZERO_STEPS = Limit(1.5, "least moves", "an axis that passes zero reads it
 
 # stretches
 MOST_READINGS = Count(25_000, "readings", "time: two logs of a minute of two angles at 100 Hz are taken whole", "timed")
-ENOUGH_READINGS = Count(
-    8_000, "readings", "of short logs the dense rows are left, as each still tells of noise", "the dense logs below"
+ENOUGH_ROWS = Count(
+    4_000, "rows", "of short logs the dense rows are left, as each still tells of noise", "the dense logs below"
 )
 STRETCHES = Count(8, "stretches", "parts of a long log")
 LEAST_STRETCH_S = Limit(10.0, "s", "a stretch is at least so long")

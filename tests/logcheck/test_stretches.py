@@ -35,6 +35,10 @@ def test_logs_that_a_search_can_hold_stay_whole() -> None:
     assert (found.names, found.notes) == (("one", "two"), ())
 
 
+def test_of_no_logs_nothing_is_looked_at() -> None:
+    assert stretches([], [], [], SLOW_RAD_S).logs == ()
+
+
 def test_a_million_rows_are_shown_by_their_beginning_their_end_and_where_most_moves() -> None:
     long, short = log_of(1_000_000), log_of(6000)
     used = [np.arange(1_000_000) % 3 > 0, all_rows(short)]
@@ -64,7 +68,7 @@ def dense_log(n: int, period_s: float) -> RunLog:
 
 
 def test_rows_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_seen() -> None:
-    n, period_s, factor = 500_000, 60e-6, 125  # by 166 rows were 10 ms apart, by 125 8000 readings are left
+    n, period_s, factor = 500_000, 60e-6, 125  # by 166 rows were 10 ms apart, by 125 4000 are left
     dense, mask = dense_log(n, period_s), np.arange(n) % 3 > 0
     found = stretches([dense, log_of(1000)], [mask, all_rows(log_of(1000))], ["dense", "short"], SLOW_RAD_S)
     seen = found.logs[0]
@@ -105,7 +109,7 @@ def test_of_a_recording_and_its_every_second_row_the_same_rows_are_seen() -> Non
 
 
 def test_of_short_logs_every_row_is_seen_however_dense() -> None:
-    dense = dense_log(thresholds.ENOUGH_READINGS // 2, 1e-3)
+    dense = dense_log(thresholds.ENOUGH_ROWS, 1e-3)
     assert stretches([dense], [all_rows(dense)], ["dense"], SLOW_RAD_S).logs == (dense,)
 
 
