@@ -1,7 +1,7 @@
 """Dense logs by rows as a plant needs them, then long ones by stretches: as many rows as a search can hold, chosen by where and how much
 moves, never by how the plant fits them.
 
-A recording and the same with half as many rows, each with the mean of its inputs, then tell the same where both are denser than that.
+A recording and the same with half of its rows, inputs averaged, tell the same where both are denser than that.
 """
 
 from collections.abc import Sequence

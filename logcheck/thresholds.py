@@ -201,8 +201,8 @@ COARSEST_S = Limit(
     10e-3,
     "s",
     "apart, for what the plant file does not state: a mode of 25 Hz is seen four times a swing, and a delay of part of a row is told",
-    "cases of the third rig logged at 1 and 2 ms, seeds 348, 349, 351: eight thinned towards 10 ms and twenty to 4 ms have the same verdicts "
-    "as those of them that were asked otherwise; of two names the twin came first, and one lag had 0.44, by all rows 0.65",
+    "cases of the third rig logged at 1 and 2 ms, seeds 348, 349, 351: eight thinned towards 10 ms and twenty to 4 ms have the same "
+    "verdicts as those of them that were asked otherwise; of two names the twin came first, and one lag had 0.44, by all rows 0.65",
 )
 
 
