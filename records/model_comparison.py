@@ -52,6 +52,14 @@ class ModelComparison:
     parameters_nats: float | None = None
     parameters_ahead_nats: float = 0.0
 
+    @property
+    def columns(self) -> Array:
+        """What (2) and (3) are of: evidence, prior, n and a of each candidate, then of parameters alone (4, candidates + 1); what is not
+        there has evidence of -inf."""
+        named = [(one.evidence_nats, one.prior_nats, one.further, one.ahead_nats) for one in self.candidates]
+        alone = -np.inf if self.parameters_nats is None else self.parameters_nats
+        return np.array([*named, (alone, 0.0, 0.0, self.parameters_ahead_nats)]).T
+
 
 @dataclass(frozen=True)
 class ComparisonLaw:
@@ -68,20 +76,20 @@ class ComparisonLaw:
     partly_single: float
     partly_several: float
 
-    def scale_nats(self, formed_nats: float) -> float:
+    def scale_nats(self, formed_nats: float | Array) -> Array:
         """(1)"""
-        return float(np.exp(self.size) * (1.0 + formed_nats) ** self.power)
+        return np.asarray(np.exp(self.size) * (1.0 + formed_nats) ** self.power)
+
+    def log_weights(self, columns: Array, formed_nats: float | Array) -> Array:
+        """(2) and (3): of `columns` (4, ...) of one comparison, or of many with their `formed_nats`, in the shape of a column."""
+        evidence_nats, prior, further, ahead_nats = columns
+        return np.asarray(
+            evidence_nats / self.scale_nats(formed_nats) + prior - self.further * further + self.ahead * ahead_nats
+        )
 
     def shares(self, told: ModelComparison) -> Array:
         """Of each candidate, then of parameters alone, of all that explains: weights of (2) and (3) over their sum (candidates + 1,)."""
-        scale = self.scale_nats(told.formed_nats)
-        logs = [
-            one.evidence_nats / scale + one.prior_nats - self.further * one.further + self.ahead * one.ahead_nats
-            for one in told.candidates
-        ]
-        ahead = self.ahead * told.parameters_ahead_nats
-        alone = -np.inf if told.parameters_nats is None else told.parameters_nats / scale + ahead
-        found = np.array([*logs, alone])
+        found = self.log_weights(told.columns, told.formed_nats)
         if not np.isfinite(found).any():
             return np.zeros(len(found))
         weights = np.exp(found - found.max())

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from blind.calibration.examples import Example, Family
-from blind.calibration.fit import fit, log_loss
+from blind.calibration.fit import log_loss, of_shares, with_explained
 from blind.scoring.statistics import calibration_error, honest_error, reliability
 from records.errors import BadInput
 from records.model_comparison import ComparisonLaw
@@ -44,9 +44,13 @@ class Calibration:
 def calibrate(families: Sequence[Family]) -> Calibration:
     """Fit the law to all families; raises BadInput where there are not two different ones."""
     _demand_two(families)
-    decay = min(reversed(DECAYS), key=lambda tried: _together(families, _left_out(families, tried)))
+    learned = [[entry for other in families if other is not one for entry in other.examples] for one in families]
+    begun = [of_shares(examples) for examples in learned]
+    laws = {decay: [with_explained(*halves, decay) for halves in zip(begun, learned, strict=True)] for decay in DECAYS}
+    decay = min(reversed(DECAYS), key=lambda tried: _together(families, laws[tried]))
+    left_out = laws[decay]
     examples = [entry for one in families for entry in one.examples]
-    law, left_out = fit(examples, decay), _left_out(families, decay)
+    law = with_explained(of_shares(examples), examples, decay)
     told = [_firsts(other, one.examples) for other, one in zip(left_out, families, strict=True)]
     said = [entry.stated for entry in examples if entry.stated is not None]
     return Calibration(
@@ -73,13 +77,6 @@ def quality(firsts: Stated, loss: float | None) -> Quality:
 
 def _firsts(law: ComparisonLaw, examples: Sequence[Example]) -> Stated:
     return [entry.first(law) for entry in examples]
-
-
-def _left_out(families: Sequence[Family], decay: float) -> list[ComparisonLaw]:
-    """Of each family the law of all others."""
-    return [
-        fit([entry for other in families if other is not one for entry in other.examples], decay) for one in families
-    ]
 
 
 def _together(families: Sequence[Family], laws: Sequence[ComparisonLaw]) -> float:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
-from scipy.special import expit
+from scipy.special import expit, softmax
 
 from blind.calibration.examples import Example
 from blind.calibration.withheld import withheld
@@ -41,8 +41,12 @@ UNLEARNED = ComparisonLaw(*(mean for mean, _ in SHARES.values()), *[0.0] * 4, *[
 
 def fit(examples: Sequence[Example], decay: float) -> ComparisonLaw:
     """The most probable law; `decay` is the inverse variance of each coefficient per standard deviation of its feature."""
+    return with_explained(of_shares(examples), examples, decay)
+
+
+def of_shares(examples: Sequence[Example]) -> ComparisonLaw:
+    """The law with its first half, which no decay is of, and how often a wrong first is right in part."""
     law = _with_shares(UNLEARNED, [entry for entry in examples if any(entry.right)])
-    law = _with_explained(law, examples, decay)
     return replace(law, partly_single=partly(law, examples, False), partly_several=partly(law, examples, True))
 
 
@@ -73,21 +77,36 @@ def _with_shares(law: ComparisonLaw, listed: Sequence[Example]) -> ComparisonLaw
     def of(numbers: Array) -> ComparisonLaw:
         return replace(law, **dict(zip(SHARES, numbers.tolist(), strict=True)))
 
+    columns, right = _listed(listed)
+    formed_nats = np.array([[entry.told.formed_nats] for entry in listed])
+    misled = np.array([np.mean(entry.right) for entry in listed])
+
     def loss(numbers: Array) -> float:
-        told = sum(
-            np.log((1.0 - MISLED) * _share(of(numbers), entry) + MISLED * np.mean(entry.right)) for entry in listed
-        )
-        return float(0.5 * np.sum(((numbers - mean) / sd) ** 2) - told)
+        shares = softmax(of(numbers).log_weights(columns, formed_nats), axis=1)
+        told = np.log((1.0 - MISLED) * (shares * right).sum(axis=1) + MISLED * misled)
+        return float(0.5 * np.sum(((numbers - mean) / sd) ** 2) - told.sum())
 
     return of(_least(loss, mean))
+
+
+def _listed(listed: Sequence[Example]) -> tuple[Array, Array]:
+    """What each lists, as (4, answers, most), and which of it is right (answers, most); no weight where an answer lists less than most."""
+    most = max((entry.told.columns.shape[1] for entry in listed), default=0)
+    columns, right = np.zeros((4, len(listed), most)), np.zeros((len(listed), most))
+    columns[0] = -np.inf
+    for row, entry in enumerate(listed):
+        own = entry.told.columns
+        columns[:, row, : own.shape[1]] = own
+        right[row, : len(entry.right)] = entry.right
+    return columns, right
 
 
 def _least(loss: Callable[[Array], float], start: Array) -> Array:
     return np.asarray(minimize(loss, start, method="Nelder-Mead", options=ENDED).x)
 
 
-def _with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: float) -> ComparisonLaw:
-    """The law with its second half. Weight decay is per standard deviation of a feature, so the fit is defined with few examples and
+def with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: float) -> ComparisonLaw:
+    """The same law with its second half. Weight decay is per standard deviation of a feature, so the fit is defined with few examples and
     forgets units; a feature that does not vary has coefficient 0."""
     smaller = [entry for example in examples for entry in withheld(example)]
     told_of = [*examples, *smaller]

@@ -99,7 +99,7 @@ def weigh(
     order = np.argsort(-shares[:-1], kind="stable")[:RANKED].tolist()
     first = likeliest_of(told, shares)
     partly = (1.0 - explained) * learnt.partly(first)
-    scale = learnt.scale_nats(told.formed_nats)
+    scale = float(learnt.scale_nats(told.formed_nats))
     return Weighed(
         tuple(explanations.named[index] for index in order),
         tuple(float(explained * shares[index]) for index in order),
