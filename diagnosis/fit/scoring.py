@@ -27,7 +27,6 @@ UNKNOWN_SD = 1e3  # decades: next to nothing is known beforehand
 SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
 TWICE = 2.0 * float(np.log(10.0))  # of a decade of a number, that its variance grows by
-ACROSS = 0.3  # decades, over a ridge or a hollow that an axis makes which comes to rest
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +50,13 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
         return start, -np.inf
     for _ in range(MOST_STEPS if numbers else 0):
         g, information = _linear(at, runs, numbers)
-        step, single = _step(at, numbers, g, information), _kept(g / np.diag(information))
-        promised = max(_promised(g, information, one) for one in (step, *np.diag(single)))
+        step, single = _step(at, numbers, g, information), _single(at, numbers, g, information)
+        promises = [_promised(g, information, one) for one in single]
+        promised = max(_promised(g, information, step), *promises)
         if promised < LITTLE_PROMISED:
             break
-        tries = _tries(at, numbers, step, single if promised > NEARLY_THERE else None)
+        alone = [single[place] for place in np.argsort(promises)[::-1] if promises[place] > NEARLY_THERE]
+        tries = _tries(at, numbers, step, alone)
         better = _better(case, tries, numbers, _worth(at, runs, numbers) + LITTLE_PROMISED)
         if better is None:
             break
@@ -118,25 +119,31 @@ def _is_blocked(hypothesis: Hypothesis, number: Number, step: float) -> bool:
     return number.of(number.put(hypothesis, x + float(np.copysign(NUDGE, step)))) == x
 
 
-def _tries(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Array | None) -> Iterator[Hypothesis]:
-    """Where the likelihood may be higher: shares of the whole step; where axes stick, and slopes lead nowhere, one number `alone`, by its
-    own step or by ACROSS; not where so little is promised that it may be noise of the likelihood."""
-    for share in SHARES:
-        yield _moved(hypothesis, numbers, step, share)
-    if alone is None:
-        return
-    for place in np.argsort(-np.abs(alone)).tolist():
-        yield _moved(hypothesis, [numbers[place]], alone[[place]], SHARES[0])
-    for number in numbers:
-        yield from (number.put(hypothesis, number.of(hypothesis) + by) for by in (ACROSS, -ACROSS))
+def _single(hypothesis: Hypothesis, numbers: Sequence[Number], g: Array, information: Array) -> Array:
+    """The step of each number alone, along a row (numbers, numbers); none of one that a bound keeps from going there."""
+    steps = _kept(g / np.diag(information))
+    return np.diag(
+        [0.0 if _is_blocked(hypothesis, *told) else told[1] for told in zip(numbers, steps.tolist(), strict=True)]
+    )
 
 
-def _moved(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, share: float) -> Hypothesis:
-    """A share of one step, which `_kept` has kept near."""
-    decades = share * np.log1p(TWICE * step) / TWICE
+def _tries(
+    hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Sequence[Array]
+) -> Iterator[Hypothesis]:
+    """Where the likelihood may be higher: shares of the whole step; and where axes stick, and slopes lead nowhere, each step `alone`."""
+    yield from (_moved(hypothesis, numbers, share * _decades(step)) for share in SHARES)
+    yield from (_moved(hypothesis, numbers, _decades(one)) for one in alone)
+
+
+def _moved(hypothesis: Hypothesis, numbers: Sequence[Number], decades: Array) -> Hypothesis:
     for number, change in zip(numbers, decades.tolist(), strict=True):
-        hypothesis = number.put(hypothesis, number.of(hypothesis) + change)
+        hypothesis = number.put(hypothesis, number.of(hypothesis) + change) if change else hypothesis
     return hypothesis
+
+
+def _decades(step: Array) -> Array:
+    """Those of numbers by a step in variances, which `_kept` has kept near."""
+    return np.asarray(np.log1p(TWICE * step) / TWICE)
 
 
 def _kept(step: Array) -> Array:

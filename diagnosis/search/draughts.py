@@ -3,6 +3,8 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
@@ -70,21 +72,33 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
         if len(entry.effects) == len(likeliest.effects) - 1 and set(entry.effects) < set(likeliest.effects)
     ]
     asked = [entry for entry in fewer if frozenset(entry.effects) not in known]
-    return [*found, *_all_noisy(case, asked, first)]
+    return [*found, *_all_noisy(case, asked, [first])]
 
 
-def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypothesis) -> list[FittedHypothesis]:
-    """Those asked, fitted under the noise of the first; with their own those that come near the likeliest by it, or by what their
-    innovations foretell, but for those in which it would be more than noise."""
-    begun = thread_map(lambda entry: _under_noise_of(case, entry, first), asked)
-    least = max(entry.evidence for entry in (first, *begun)) - decisions.NEAR_BEST
-    left = _foretold(case, first)
+def _all_noisy(
+    case: Case, asked: Sequence[FittedHypothesis], known: Sequence[FittedHypothesis]
+) -> list[FittedHypothesis]:
+    """Those asked, fitted under the noise of the first that is known; with their own those that it could bring near the likeliest, but for
+    those in which it would be more than noise.
 
-    def settled(entry: FittedHypothesis, under: FittedHypothesis) -> FittedHypothesis | None:
-        further = decisions.PARAMETERS_BACK * max(_foretold(case, under) - left, 0.0)
-        return _own_noise(case, entry, first) if under.evidence + further >= least else under
+    What lacks the same shows the same in its innovations: noise that the one with the furthest reach has is tried beside the others.
+    """
+    begun = thread_map(lambda entry: _under_noise_of(case, entry, known[0]), asked)
+    least = max(entry.evidence for entry in (known[0], *begun)) - decisions.NEAR_BEST
+    reach = dict(zip(asked, thread_map(lambda under: _reach(case, under, known[0]), begun), strict=True))
+    far = [under for entry, under in zip(asked, begun, strict=True) if reach[entry] < least]
+    near = sorted((entry for entry in asked if reach[entry] >= least), key=lambda entry: -reach[entry])
+    if not near:
+        return far
+    lead = _own_noise(case, near[0], known, least)
+    tried = known if lead is None else [*known, lead]
+    return [*far, *filter(None, [lead, *thread_map(lambda entry: _own_noise(case, entry, tried, least), near[1:])])]
 
-    return [entry for entry in thread_map(settled, asked, begun) if entry is not None]
+
+def _reach(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> float:
+    """The evidence that noise with a memory could give a hypothesis at most, by what its innovations foretell beyond those of the first."""
+    further = max(_foretold(case, fitted) - _foretold(case, first), 0.0)
+    return fitted.evidence + decisions.PARAMETERS_BACK * further
 
 
 def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> FittedHypothesis:
@@ -104,21 +118,29 @@ def _noisy_of_a_size(
     """Hypotheses of one number of effects with their noise, the likeliest and what comes near it; `first` is the `best` of all with its
     own."""
     own = best if best in group else max(group, key=lambda entry: entry.evidence)
-    noisy = first if own is best else _own_noise(case, own, first)
+    noisy = first if own is best else _own_noise(case, own, [first])
     if noisy is None:
         return []
     others = _in_reach(case, own, noisy, [entry for entry in group if entry is not own])
-    return [noisy, *_all_noisy(case, others, first)]
+    return [noisy, *_all_noisy(case, others, list(dict.fromkeys([first, noisy])))]
 
 
-def _own_noise(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> FittedHypothesis | None:
-    """The hypothesis with the noise of the first; or with what it shows by itself, where its innovations promise more and that is
-    likelier."""
-    shared = _with_memory(case, fitted, first) if _has_memory(case, first) else fitted
-    if shared is not None and _foretold(case, shared) - _foretold(case, first) < decisions.TAKEN_IN:
-        return shared
+def _own_noise(
+    case: Case, fitted: FittedHypothesis, known: Sequence[FittedHypothesis], least: float = -np.inf
+) -> FittedHypothesis | None:
+    """The hypothesis with the noise of one that is `known`; or with what it shows by itself, where its innovations promise more than those
+    of the first and as much as `least`, and that is likelier."""
+    found = list[FittedHypothesis]()
+    for other in known:
+        shared = _with_memory(case, fitted, other) if _has_memory(case, other) else fitted
+        if shared is None:
+            continue
+        found.append(shared)
+        promises = _foretold(case, shared) - _foretold(case, known[0]) >= decisions.TAKEN_IN
+        if not promises or _reach(case, shared, known[0]) < least:
+            return max(found, key=lambda entry: entry.evidence)
     own = _with_memory(case, fitted)
-    return max((entry for entry in (shared, own) if entry is not None), key=lambda entry: entry.evidence, default=None)
+    return max((*found, *([] if own is None else [own])), key=lambda entry: entry.evidence, default=None)
 
 
 def with_noise_of(case: Case, fitted: Sequence[FittedHypothesis], known: FittedHypothesis) -> list[FittedHypothesis]:

@@ -15,7 +15,7 @@ from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.search.beam import Search, beam_of, with_twins
-from diagnosis.search.draughts import hardly_told, with_noise_beside, with_noise_of
+from diagnosis.search.draughts import _own_noise, hardly_told, with_noise_beside, with_noise_of
 from diagnosis.search.exchange import fit_twins, is_twin, twins_of
 from diagnosis.search.fitting import refined
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -203,6 +203,21 @@ def test_noise_is_sought_beside_what_foretells_another_of_its_own(late: Case) ->
         entry = replace(drive, evidence=noisy.evidence - short * promised - decisions.NEAR_BEST)
         found = {one.effects for one in with_noise_beside(late, [sensor, entry])}
         assert (drive.effects in found) is asked
+
+
+def test_own_noise_is_not_sought_beside_what_stays_out_of_reach_under_noise_that_is_known(late: Case) -> None:
+    # Truth: the noise of the drive's lag, with numbers that are the sensor's, is what a search that begins with it finds; far from what
+    # could lead no other is sought, in reach another may be likelier and is never less.
+    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    (noisy,) = with_noise_beside(late, [drive])
+    (shared,) = with_noise_of(late, [sensor], noisy)
+    with decisions.changed("TAKEN_IN", 1e-9):  # whatever little its innovations promise
+        out = _own_noise(late, sensor, [noisy], least=shared.evidence + 1e6)
+        near = _own_noise(late, sensor, [noisy])
+    assert out is not None
+    assert near is not None
+    assert out.evidence == shared.evidence
+    assert near.evidence >= shared.evidence
 
 
 def test_the_share_of_a_name_is_that_of_what_is_hardly_told_from_it_too(late: Case) -> None:
