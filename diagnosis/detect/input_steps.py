@@ -2,6 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +16,20 @@ from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Pass
 from jobs.thread_map import thread_map
 from sim.kernel.reference import reference
-from sim.paths.path import counts_held
+from toolchain.host import FAST_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
 APART = 1.005  # 25 steps further a rounding must still fall alike
 SMALLEST, LARGEST = 0.004, 0.25  # of the input's range; of the part of it that the commands take, where that is less
 STEPS_APART = 1.004
-ROWS = 128  # at once: with all steps side by side they stay in a processor's cache
 MOMENTS = 50  # of a log, of which slopes are taken
 ASKED = 40  # by what they say for the size of their errors; of these what they gain is asked
+DECLARATIONS = """
+void step_sums(int64_t rows, const double *u, const double *pull, const double *square, int64_t steps, const double *q, const double *hold,
+               const double *shift, double *count, double *score, double *squares);
+void step_errors(int64_t rows, const double *u, int64_t steps, const double *q, const double *hold, const double *shift, double *count,
+                 double *error);
+"""
 
 
 @dataclass(frozen=True)
@@ -54,13 +62,14 @@ def likely_steps(
         return []
     way = _Rounded(column, push, kinds)
     steps = _asked_of(linearisation, way.column, entry.size)
-    steps = steps[np.argsort(-_promises(linearisation, way, steps))[:ASKED]]
-    by_kind = np.array([_gains(linearisation, way, steps, kind) for kind in kinds])
+    promises = _promises(linearisation, way, steps)
+    asked = np.argsort(-promises.max(axis=0))[:ASKED]
+    steps, own = steps[asked], [kinds[place] for place in promises[:, asked].argmax(axis=0).tolist()]
     found: list[tuple[float, Kind]] = []
-    for index in np.argsort(-by_kind.max(axis=0)).tolist():
+    for index in np.argsort(-_gains(linearisation, way, steps, own)).tolist():
         step = float(steps[index])
         if all(max(step, other) > STEPS_APART * min(step, other) for other, _ in found):
-            found.append((step, kinds[int(np.argmax(by_kind[:, index]))]))
+            found.append((step, own[index]))
         if len(found) == decisions.NEXT:
             break
     return found
@@ -85,8 +94,8 @@ class _Sent:
 
 
 def _promises(linearisation: Linearisation, way: _Rounded, steps: Array) -> Array:
-    """The squared score (k,) of each step's errors over their sum of squares, the best of all kinds: what they gain but for how much of
-    them shows, which is much alike for errors that are as good as random. Errors count in steps: a step's size cancels."""
+    """The squared score (kinds, k) of each step's errors over their sum of squares: what they gain but for how much of them shows, which is
+    much alike for errors that are as good as random. Errors count in steps: a step's size cancels."""
     logs = [
         _sent(filter_input, way.column, pull)
         for filter_input, pull in zip(linearisation.filter_inputs, linearisation.pulls(way.push), strict=True)
@@ -96,7 +105,7 @@ def _promises(linearisation: Linearisation, way: _Rounded, steps: Array) -> Arra
         score, squares = (sum(sums) for sums in zip(*(_sums(log, steps, kind) for log in logs), strict=True))
         return np.asarray(np.maximum(score, 0.0) ** 2 / np.maximum(squares, 1e-300))
 
-    return np.asarray(np.max(thread_map(by, way.kinds), axis=0))
+    return np.array(thread_map(by, way.kinds))
 
 
 def _sent(filter_input: FilterInput, column: int, pull: Array) -> _Sent:
@@ -107,29 +116,37 @@ def _sent(filter_input: FilterInput, column: int, pull: Array) -> _Sent:
 
 def _sums(log: _Sent, steps: Array, kind: Kind) -> tuple[Array, Array]:
     """Score and sum of squares (k,) of the errors of each step over one log."""
-    score, squares, level = np.zeros(len(steps)), np.zeros(len(steps)), None
-    for begin in range(0, len(log.u), ROWS):
-        part = slice(begin, begin + ROWS)
-        x = log.u[part, None] / steps + kind.shift
-        held = counts_held(x, kind.hold, level)
-        level = held[-1]
-        x -= held
-        score -= log.pull[part] @ x
-        squares += log.square[part] @ np.square(x, out=x)
+    score, squares = np.empty_like(steps), np.empty_like(steps)
+    _called("step_sums", [log.u, log.pull, log.square], steps, [kind] * len(steps), [score, squares])
     return score, squares
 
 
-def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, kind: Kind) -> Array:
-    errors = [_errors(filter_input, way.column, steps, kind) for filter_input in linearisation.filter_inputs]
+def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, kinds: Sequence[Kind]) -> Array:
+    errors = [_disturbing(filter_input, way.column, steps, kinds) for filter_input in linearisation.filter_inputs]
     return linearisation.gains_by(errors, way.push)
 
 
-def _errors(filter_input: FilterInput, column: int, steps: Array, kind: Kind) -> Disturbances:
-    """Errors of an input by steps, over each of a filter input's own (instants, steps): those that the rig has move the innovations as
-    its answer says; what the model would add moves them the other way."""
-    x, h = filter_input.u[:, column, None] / steps + kind.shift, _durations_s(filter_input)[:, None]
-    errors = steps * (x - counts_held(x, kind.hold))
-    return lambda part: np.asarray(errors[part] * h[part])
+def _disturbing(filter_input: FilterInput, column: int, steps: Array, kinds: Sequence[Kind]) -> Disturbances:
+    """Errors of an input by steps (k,), each of its kind, over each of a filter input's own (instants, k): those that the rig has move the
+    innovations as its answer says; what the model would add moves them the other way."""
+    errors, h = errors_of(filter_input.u[:, column], steps, kinds), _durations_s(filter_input)
+    return lambda part: np.asarray(steps * errors[part] * h[part, None])
+
+
+def errors_of(u: Array, steps: Array, kinds: Sequence[Kind]) -> Array:
+    """What rounding takes from commands u (rows,), in steps (rows, k)."""
+    errors = np.empty((len(u), len(steps)))
+    _called("step_errors", [u], steps, kinds, [errors])
+    return errors
+
+
+def _called(name: str, rows: Sequence[Array], steps: Array, kinds: Sequence[Kind], found: Sequence[Array]) -> None:
+    """A function of input_steps.c over the `rows` (each (n,)), which fills what is `found`."""
+    ffi, lib = _library()
+    hold, shift = np.array([(kind.hold, kind.shift) for kind in kinds]).T
+    arrays = [*map(np.ascontiguousarray, (*rows, steps, hold, shift)), np.empty_like(steps), *found]
+    told = [ffi.cast("double *", array.ctypes.data) for array in arrays]
+    getattr(lib, name)(len(rows[0]), *told[: len(rows)], len(steps), *told[len(rows) :])
 
 
 def _durations_s(filter_input: FilterInput) -> Array:
@@ -164,3 +181,9 @@ def _moments(filter_input: FilterInput, run: Pass) -> Iterator[tuple[Array, Arra
     rows = np.flatnonzero(filter_input.row >= 0)
     for instant in rows[:: max(len(rows) // MOMENTS, 1)].tolist():
         yield run.filtered[filter_input.row[instant]], filter_input.u[instant]
+
+
+@cache
+def _library() -> tuple[Any, Any]:
+    path = build_shared("input_steps", [Path(__file__).with_name("input_steps.c")], flags=FAST_FLAGS)
+    return load_shared(DECLARATIONS, path)

@@ -111,18 +111,6 @@ def in_held_steps(x: Array, step: float, hold: float, level: float | None) -> tu
     return np.array(y), at
 
 
-def counts_held(x: Array, hold: float, level: Array | None = None) -> Array:
-    """The same of x (n, k), signals side by side that are each counted in steps of its own: whole numbers (n, k); `level` (k,) is the one
-    before."""
-    counts: Array = np.rint(x)
-    if hold == 0.0:
-        return counts
-    at = counts[0] if level is None else level
-    for k, away in enumerate(x):
-        at = counts[k] = np.where(np.abs(away - at) > 0.5 + hold, counts[k], at)
-    return counts
-
-
 def uniform(number: Array, seed: int) -> Array:
     """Numbers in [0, 1) by splitmix64 of (seed, number): the same whichever way they are asked for."""
     with np.errstate(over="ignore"):
