@@ -137,7 +137,7 @@ def test_zeros_written_for_readings_that_were_not_there_are_none_also_beside_zer
 
 
 def test_a_sensor_that_stands_in_the_log_alone_is_told_with_its_times_and_nobody_is_accused() -> None:
-    log = default_flight()
+    log = rows_of(default_flight(), np.arange(4500))
     rows = slice(2500, 2700)
     y = log.y.copy()
     y[rows, 0] = y[rows.start, 0]
@@ -151,7 +151,7 @@ def test_a_sensor_that_stands_in_the_log_alone_is_told_with_its_times_and_nobody
 
 def test_a_firmware_that_went_wrong_in_a_hold_is_not_cleared_by_it() -> None:
     """Noise on the law's answer from a hold on: the readings stand, and what follows is no answer of the law either."""
-    log = default_flight()
+    log = rows_of(default_flight(), np.arange(3200))
     u = log.u.copy()
     u[2500:, 0] += np.random.default_rng(4).normal(0.0, 0.01, len(u) - 2500)
     found = replay_stretches(replace(log, u=u), TABLE)
