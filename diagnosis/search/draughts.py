@@ -3,8 +3,6 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
@@ -52,9 +50,9 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
-    Where it does so beside the best, evidence under it is not to be compared with evidence without. The best of each number of effects is
-    asked, of the others those that it could bring near that, and the likeliest of all once more without each of its effects: whether one
-    is needed is asked under one noise.
+    Where it does so beside the best, evidence under it is not to be compared with evidence without. Of each number of effects those are
+    asked that it could bring near, and the likeliest of all once more without each of its effects: whether one is needed is asked under one
+    noise.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
     near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.NEAR_BEST)
@@ -62,37 +60,35 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
     best, first = next(noisy, (None, None))
     if best is None or first is None:
         return []
-    sizes = sorted({len(entry.effects) for entry in fitted})
-    groups = [[entry for entry in fitted if len(entry.effects) == size] for size in sizes]
-    found = [entry for group in groups for entry in _noisy_of_a_size(case, group, best, first)]
+    sizes = {len(entry.effects) for entry in fitted}
+    others = [[entry for entry in ranked if len(entry.effects) == size and entry is not best] for size in sizes]
+    asked = [entry for group in others for entry in _in_reach(case, best, first, group)]
+    found = [first, *_all_noisy(case, asked, first)]
     known, likeliest = {frozenset(entry.effects) for entry in found}, max(found, key=lambda entry: entry.evidence)
     fewer = [
         entry
         for entry in fitted
         if len(entry.effects) == len(likeliest.effects) - 1 and set(entry.effects) < set(likeliest.effects)
     ]
-    asked = [entry for entry in fewer if frozenset(entry.effects) not in known]
-    return [*found, *_all_noisy(case, asked, [first])]
+    return [*found, *_all_noisy(case, [entry for entry in fewer if frozenset(entry.effects) not in known], first)]
 
 
-def _all_noisy(
-    case: Case, asked: Sequence[FittedHypothesis], known: Sequence[FittedHypothesis]
-) -> list[FittedHypothesis]:
-    """Those asked, fitted under the noise of the first that is known; with their own those that it could bring near the likeliest, but for
-    those in which it would be more than noise.
+def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypothesis) -> list[FittedHypothesis]:
+    """Those asked, fitted under the noise of the first; with their own those that it could bring near the likeliest, but for those in which
+    it would be more than noise.
 
     What lacks the same shows the same in its innovations: noise that the one with the furthest reach has is tried beside the others.
     """
-    begun = thread_map(lambda entry: _under_noise_of(case, entry, known[0]), asked)
-    least = max(entry.evidence for entry in (known[0], *begun)) - decisions.NEAR_BEST
-    reach = dict(zip(asked, thread_map(lambda under: _reach(case, under, known[0]), begun), strict=True))
+    begun = thread_map(lambda entry: _under_noise_of(case, entry, first), asked)
+    least = max(entry.evidence for entry in (first, *begun)) - decisions.NEAR_BEST
+    reach = dict(zip(asked, thread_map(lambda under: _reach(case, under, first), begun), strict=True))
     far = [under for entry, under in zip(asked, begun, strict=True) if reach[entry] < least]
     near = sorted((entry for entry in asked if reach[entry] >= least), key=lambda entry: -reach[entry])
     if not near:
         return far
-    lead = _own_noise(case, near[0], known, least)
-    tried = known if lead is None else [*known, lead]
-    return [*far, *filter(None, [lead, *thread_map(lambda entry: _own_noise(case, entry, tried, least), near[1:])])]
+    lead = _own_noise(case, near[0], [first], least)
+    known = [first] if lead is None else [first, lead]
+    return [*far, *filter(None, [lead, *thread_map(lambda entry: _own_noise(case, entry, known, least), near[1:])])]
 
 
 def _reach(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> float:
@@ -112,21 +108,8 @@ def _fit_under(case: Case, fitted: FittedHypothesis, known: FittedHypothesis, ro
     return fit(case, as_noisy(case, fitted.fit.hypothesis, known.fit.hypothesis), rounds=rounds)
 
 
-def _noisy_of_a_size(
-    case: Case, group: Sequence[FittedHypothesis], best: FittedHypothesis, first: FittedHypothesis
-) -> list[FittedHypothesis]:
-    """Hypotheses of one number of effects with their noise, the likeliest and what comes near it; `first` is the `best` of all with its
-    own."""
-    own = best if best in group else max(group, key=lambda entry: entry.evidence)
-    noisy = first if own is best else _own_noise(case, own, [first])
-    if noisy is None:
-        return []
-    others = _in_reach(case, own, noisy, [entry for entry in group if entry is not own])
-    return [noisy, *_all_noisy(case, others, list(dict.fromkeys([first, noisy])))]
-
-
 def _own_noise(
-    case: Case, fitted: FittedHypothesis, known: Sequence[FittedHypothesis], least: float = -np.inf
+    case: Case, fitted: FittedHypothesis, known: Sequence[FittedHypothesis], least: float
 ) -> FittedHypothesis | None:
     """The hypothesis with the noise of one that is `known`; or with what it shows by itself, where its innovations promise more than those
     of the first and as much as `least`, and that is likelier."""
