@@ -28,7 +28,7 @@ from diagnosis.search.draughts import Draught, draught
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
-from diagnosis.seeing import alarmed, alone_of, beside_noise, detected, seen_of
+from diagnosis.seeing import alarmed, alone_of, beside_noise, detected_anew, seen_of
 from diagnosis.standing import confirmed_by, of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
@@ -141,7 +141,7 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     seen = seen.because(*found_there.decisions, *rules)
     if not is_anew:
         return seen, None
-    again = beside_noise(detected(found_there.case, seen.checked, found_there.beside))
+    again = beside_noise(detected_anew(found_there.case, seen, found_there.beside))
     return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
 
 

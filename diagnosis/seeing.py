@@ -1,6 +1,7 @@
 """Whether there is a gap at all: the plant alone as its logs have it, what of the library shows beside it, and whether names are sought
 beside noise with a memory."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, with_commands
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.nominal import best_plain_fit, plain_beside, with_memory
+from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory, with_memory_from
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
@@ -37,15 +38,34 @@ def seen_of(bound: BoundPlant, material: Material) -> Seen:
     return detected(case, checked)
 
 
-def detected(case: Case, checked: Case | None, beside: FittedHypothesis | None = None) -> Seen:
+def detected(case: Case, checked: Case | None) -> Seen:
     """Fit the plant alone, and score the library beside it; where a gap shows, once more from where the best single effect left the plant's
     numbers, as slopes from the stated ones may lead to another hill."""
-    as_held = best_plain_fit(case)
+    return _detected(case, checked, best_plain_fit(case), with_memory)
+
+
+def detected_anew(case: Case, seen: Seen, beside: FittedHypothesis | None) -> Seen:
+    """The same of another reading of the logs, from the plant as it was fitted before; `beside` is what was fitted already."""
+    known = seen.retuned.fit.hypothesis
+
+    def noisy(case: Case, found: Fit) -> Fit:
+        return with_memory_from(case, found, known)
+
+    return _detected(case, seen.checked, plain_from(case, known), noisy, beside)
+
+
+def _detected(
+    case: Case,
+    checked: Case | None,
+    as_held: Fit,
+    noisy: Callable[[Case, Fit], Fit],
+    beside: FittedHypothesis | None = None,
+) -> Seen:
     commands, nominal, between = between_rows(case, as_held)
     held = Held(case, as_held, between[0].value or 0.0) if nominal is not as_held else None
     case, checked = with_commands(case, commands), None if checked is None else with_commands(checked, commands)
-    nominal = with_memory(case, nominal)
-    seen = replace(scored(case, checked, nominal, between), beside=beside, held=held)
+    nominal = noisy(case, nominal)
+    seen = replace(scored(case, checked, nominal, between), held=held, beside=beside)
     if not alarmed(seen.detection.p):
         return seen
     seen = _with_names(seen)
@@ -59,7 +79,7 @@ def detected(case: Case, checked: Case | None, beside: FittedHypothesis | None =
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
     if not better:
         return seen.because(rule)
-    return replace(scored(case, checked, with_memory(case, again), (*between, rule)), beside=beside, held=held)
+    return replace(scored(case, checked, with_memory(case, again), (*between, rule)), held=held, beside=beside)
 
 
 def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:

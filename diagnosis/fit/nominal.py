@@ -1,5 +1,9 @@
 """The plant alone, fitted: what every other hypothesis is compared with."""
 
+from dataclasses import replace
+
+import numpy as np
+
 from diagnosis import decisions
 from diagnosis.fit.coloured_noise import coloured_noise_of, colours, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
@@ -30,6 +34,13 @@ def best_plain_fit(case: Case) -> Fit:
 def plain_fit(case: Case, first: float = float(decisions.FIRST_PROCESS_NOISE)) -> Fit:
     """The plant re-tuned within its spread, with the white noise that then remains; its search begins at log10 `first`."""
     return settled(case, nominal_hypothesis(case, first))
+
+
+def plain_from(case: Case, known: Hypothesis) -> Fit:
+    """The same from the parameters that another reading of the logs left; white noise, of which noise with a memory may have left none,
+    begins where it does before any log is seen."""
+    process_noise = np.maximum(known.process_noise, float(decisions.FIRST_PROCESS_NOISE))
+    return settled(case, replace(known.with_effects(case.stated), process_noise=process_noise, reading_noise={}))
 
 
 def settled(case: Case, start: Hypothesis) -> Fit:
@@ -78,6 +89,12 @@ def with_memory(case: Case, found: Fit) -> Fit:
         found = _under(case, found, coloured)
         asked = [colour for colour in every if colour.of(found.hypothesis) is None]
     return found
+
+
+def with_memory_from(case: Case, found: Fit, known: Hypothesis) -> Fit:
+    """The fit with noise with a memory, sought from that of another hypothesis."""
+    has_memory = any(colour.of(known) is not None for colour in colours(case))
+    return with_memory(case, with_memory_of(case, found, known) if has_memory else found)
 
 
 def with_memory_of(case: Case, found: Fit, known: Hypothesis) -> Fit:

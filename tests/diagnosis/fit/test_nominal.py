@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import SETTLED_GAIN, nominal_fit, plain_beside
+from diagnosis.fit.nominal import (
+    SETTLED_GAIN,
+    best_plain_fit,
+    nominal_fit,
+    plain_beside,
+    plain_from,
+    with_memory_from,
+)
 from diagnosis.hypothesis.case import Case
 from diagnosis.seeing import detected
 from tests.diagnosis.arm import arm_case, arm_log
@@ -47,6 +54,20 @@ def test_from_another_hill_the_plant_comes_back(case: Case) -> None:
     assert again is not None
     assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
     assert np.all(np.abs(again.hypothesis.theta) < 3.0)
+
+
+def test_another_reading_of_the_same_logs_ends_no_worse_than_the_first() -> None:
+    """Truth: a torque that comes and goes. From the fit with it, whose white noise it has left little of, the plain fit and the one with
+    noise with a memory are no worse than those that a search from nothing ends at."""
+    gusty = arm_case(arm_log({"arm.gust": {"sigma": 3e-4, "T": 0.5}}, seed=82))
+    plain, noisy = best_plain_fit(gusty), nominal_fit(gusty)
+    assert noisy.log_posterior > plain.log_posterior + 10.0
+    again = plain_from(gusty, noisy.hypothesis)
+    assert not again.hypothesis.effects
+    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
+    found = with_memory_from(gusty, again, noisy.hypothesis)
+    assert found.hypothesis.effects.keys() == noisy.hypothesis.effects.keys()
+    assert found.log_posterior > noisy.log_posterior - 2.0 * SETTLED_GAIN
 
 
 def test_no_gap_asks_for_no_second_fit(case: Case) -> None:
