@@ -89,6 +89,17 @@ GRID_SD = Limit(
 SIZE_SD = Limit(
     20.0, "references", "standard deviation of an effect's size before the data: an effect costs ln 20 nats"
 )
+STEPS_COST = Limit(8.0, "nats", "the choice of an input's step: ln of some hundred steps, each of eight kinds")
+WAVES_COST = Limit(5.0, "nats", "the choice of a sine's waves: ln of some hundred")
+COLOUR_COST = Limit(
+    8.0, "nats", "size and time of a noise with a memory, which no fit counts: ln of some thousand rows"
+)
+SMALLEST_STEP = Limit(
+    0.004,
+    "share of an input's range",
+    "finer steps are sought of no input: of so much of its range as its commands take",
+)
+LARGEST_STEP = Limit(0.25, "share of an input's range", "coarser ones show in the readings of the input itself")
 SHAPE_COST = Limit(
     2.0,
     "nats",

@@ -20,7 +20,6 @@ from toolchain.host import FAST_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
 APART = 1.005  # 25 steps further a rounding must still fall alike
-SMALLEST, LARGEST = 0.004, 0.25  # of the input's range; of the part of it that the commands take, where that is less
 STEPS_APART = 1.004
 MOMENTS = 50  # of a log, of which slopes are taken
 ASKED = 40  # by what they say for the size of their errors; of these what they gain is asked
@@ -79,7 +78,7 @@ def _asked_of(linearisation: Linearisation, column: int, size: float) -> Array:
     """The steps (k,) that an input may have: a signal that takes a hundredth of its range may still come in few steps."""
     u = np.concatenate([filter_input.u[:, column] for filter_input in linearisation.filter_inputs])
     taken = min(float(np.ptp(u)), size) or size
-    smallest, largest = SMALLEST * taken, min(LARGEST * size, taken)
+    smallest, largest = decisions.SMALLEST_STEP * taken, min(decisions.LARGEST_STEP * size, taken)
     return np.geomspace(smallest, largest, 1 + int(np.log(largest / smallest) / np.log(APART)))
 
 

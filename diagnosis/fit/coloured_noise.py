@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.fit.evidence import COLOUR_COST
 from diagnosis.fit.foretold import foretold_of
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.process_noise import white_noise
@@ -51,7 +50,7 @@ def with_colours(case: Case, found: Fit, asked: Sequence[Colour]) -> Hypothesis:
     hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
     left = foretold_of(case, hypothesis)
     for colour in asked:
-        if left < COLOUR_COST:
+        if left < decisions.COLOUR_COST:
             break
         starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
         begun = likeliest(part, starts)[0]
@@ -62,7 +61,7 @@ def with_colours(case: Case, found: Fit, asked: Sequence[Colour]) -> Hypothesis:
             continue
         if part is not case:
             start, there = _likeliest(case, start, [colour], white_noise(case, start))
-        if colour.of(start) is not None and there > value + COLOUR_COST:
+        if colour.of(start) is not None and there > value + decisions.COLOUR_COST:
             hypothesis, value = start, there
             left = foretold_of(case, hypothesis)
     return hypothesis

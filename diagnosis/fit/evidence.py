@@ -10,12 +10,6 @@ from diagnosis.fit.gauss_newton import Fit, from_zero
 from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Role
 
-STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
-WAVE_COST = 5.0  # nats for the choice of a sine's waves among some hundred
-COLOUR_COST = (
-    8.0  # nats for size and time of a noise with a memory, which the fit does not count: ln of some thousand rows
-)
-
 
 @dataclass(frozen=True, eq=False)
 class FittedHypothesis:
@@ -38,10 +32,10 @@ def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     known = np.setdiff1d(np.arange(len(found.information)), [row for row, is_size in new if not is_size])
     sign, volume = np.linalg.slogdet(found.information[np.ix_(known, known)])
     supposed = [effects[name] for name in found.hypothesis.effects]
-    prior -= WAVE_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
+    prior -= decisions.WAVES_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
     rough = [p.is_size for effect in supposed for p in effect.parameters if p.rough]
-    prior -= sum(STEPS_COST if is_size else decisions.SHAPE_COST for is_size in rough)
-    prior -= COLOUR_COST * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
+    prior -= sum(decisions.STEPS_COST if is_size else decisions.SHAPE_COST for is_size in rough)
+    prior -= decisions.COLOUR_COST * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior
 
 
