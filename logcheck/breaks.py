@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows, in_words
+from logcheck.seams import behind_lost_times
 from logcheck.stretches import Stretches, part
 from records.errors import BadInput
 from records.log import RunLog
@@ -47,20 +48,24 @@ def break_findings(log: RunLog, name: str) -> Iterator[Found]:
     if log.disordered:
         count, first_s = log.disordered.rows, log.disordered.first_s
         sentence = f"t_s: {in_words(count, 'row')} whose time does not rise, first at {first_s:.6g} s; left out"
-        yield Found(Finding("disordered_rows", name, "t_s", first_s, first_s, sentence, rows=count))
+        begins = behind_lost_times(log)
+        if begins.any():
+            anew = " and ".join(f"{at_s:.6g} s" for at_s in log.t_s[begins][:SHOWN])
+            sentence += f"; from {anew} on the log is used as another one"
+        yield Found(Finding("disordered_rows", name, "t_s", first_s, first_s, sentence, rows=count), begins=begins)
     restarts = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts])
     if restarts.size:
         yield _restarted(log, name, restarts)
-    begins = gaps(log.t_s)
-    begins[restarts] = False
-    rows = np.flatnonzero(begins)
+    missing = gaps(log.t_s)
+    missing[restarts] = False
+    rows = np.flatnonzero(missing)
     if not rows.size:
         return
     spans = [f"{log.t_s[row - 1]:.6g} s to {log.t_s[row]:.6g} s" for row in rows[:SHOWN]]
     more = f" and in {len(rows) - SHOWN} more" if len(rows) > SHOWN else ""
     sentence = f"no rows from {', '.join(spans)}{more}: what follows is used as another log"
     span = (float(log.t_s[rows[0] - 1]), float(log.t_s[rows[-1]]))
-    yield Found(Finding("break", name, "t_s", *span, sentence), begins=begins)
+    yield Found(Finding("break", name, "t_s", *span, sentence), begins=missing)
 
 
 def _restarted(log: RunLog, name: str, rows: NDArray[np.int64]) -> Found:

@@ -53,7 +53,8 @@ def dead_findings(
 ) -> Iterator[Found]:
     """The stands of each output that no axis makes, whose readings are left out; with the rows `begins` (n,) another log begins.
 
-    `positions` are outputs that a mass moves. Where all outputs are read `again` (n,), the link had failed: what follows is another log.
+    `positions` are outputs that a mass moves. Where all outputs are read `again` (n,), or the inputs had stood too, the link had failed:
+    what follows is another log.
     """
     for column in log.columns.outputs:
         step = steps.get(column, 0.0)
@@ -71,12 +72,18 @@ def dead_findings(
         told = [_in_words(stand, t_s, values, column, step) for stand in stands[:SHOWN]]
         more = f"; and so {len(stands) - SHOWN} times more, last until {span[1]:.6g} s" if len(stands) > SHOWN else ""
         sentence = f"{column} stands {'; '.join(told)}{more}: the sensor was not read; left out"
-        behind = [present[stand.last] + 1 for stand in stands if present[stand.last] + 1 < len(log.t_s)]
         other: Rows = np.zeros(len(log.t_s), bool)
-        other[[row for row in behind if again is not None and again[row]]] = True
+        for first, last in ((present[stand.first], present[stand.last]) for stand in stands):
+            if last + 1 < len(other):
+                other[last + 1] = (again is not None and again[last + 1]) or _all_stood(log.u, first, last)
         if other.any():
             sentence += ", and what follows, where all are read again, is used as another log"
         yield Found(Finding("dead_stretch", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread, other)
+
+
+def _all_stood(u: Array, first: int, last: int) -> bool:
+    """Whether every input (n, inputs) stood with an output, and one moves far in the row in which it is read again: none was written."""
+    return bool(np.all(u[first : last + 1] == u[first])) and _moves_far(u[last : last + 2], np.ptp(u, axis=0))
 
 
 def amount(move: float, column: str, step: float) -> str:
@@ -129,7 +136,9 @@ def _dead(
         leaps_in = _is_leap(into, before[-thresholds.AROUND_STAND_ROWS :], least)
         leaps_out = _is_leap(out, after[: thresholds.AROUND_STAND_ROWS], least)
         arrives = _is_under_way(np.abs(arrived), least)
-        driven = _moves_far(u[begin : end + 1], usual_u)
+        driven = _moves_far(
+            u[begin : end + (2 if has_mass else 1)], usual_u
+        )  # no mass answers a command in the row that gives it
         goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
         set_going = is_set_going(u, begin, end, way, usual_u)
         starts = not has_mass and set_going and not arrives  # a rate leaves its rest by its largest move

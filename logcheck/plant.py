@@ -10,6 +10,7 @@ from logcheck.finding import EXCLUDE, NOTE, REFUSE, Finding, Found, in_words
 from logcheck.grid import grid_findings
 from logcheck.motion import exchange_findings, motion_findings
 from logcheck.standing import locked_findings, off_findings
+from logcheck.turned import turned_findings
 from logcheck.units.angle import angle_unit
 from logcheck.units.derived import rate_unit, reference_unit, rotor_unit
 from logcheck.units.inputs import input_unit, machine_unit
@@ -20,9 +21,13 @@ from sim.bind import BoundPlant
 
 def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
     """What is odd about the numbers of a log of this plant."""
-    slow = [*_time_unit(log, name, bound), *exchange_findings(log, name, bound)]
-    yield from slow
-    if any(entry.finding.severity == REFUSE for entry in slow):
+    odd = [
+        *_time_unit(log, name, bound),
+        *exchange_findings(log, name, bound),
+        *turned_findings(log, name, bound, facts.steps),
+    ]
+    yield from odd
+    if any(entry.finding.severity == REFUSE for entry in odd):
         return
     slips = [slip for column in log.columns.outputs for slip in angle_unit(log, name, column, bound, facts)]
     slips += [*input_unit(log, name, facts), *machine_unit(log, name, bound, facts)]

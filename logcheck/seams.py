@@ -38,15 +38,23 @@ def seam_findings(
         rows |= np.all(list(near.values()), axis=0)
     rows |= alone & (_new_inputs(log) | _new_motion(log, positions, steps))
     rows &= ~read_again[1:]
-    rows |= at_once & (_new_references(log, steps) | _as_at_first(log, steps))  # at rest a rig stands too before
+    rows |= at_once & (new_references(log, steps) | _as_at_first(log, steps))  # at rest a rig stands too before
+    rows &= ~behind_lost_times(log)[1:]
     if rows.any():
         first = int(np.argmax(rows))
         leaping = [column for column in moving if _leaps(log, column, apart_s, steps, 0.0)[first]]
         yield _found(log, name, leaping, len(leaping) == len(moving) > 1, steps, np.flatnonzero(rows) + 1)
     for column in (column for column in moving if column in positions):
-        lone = _beside_stands(_leaps(log, column, passed_s, steps, usual), log.column(column)) & ~rows & ~read_again[1:]
+        lone = _beside_stands(_leaps(log, column, passed_s, steps, usual), log.column(column))
+        lone &= ~(rows | read_again[1:] | behind_lost_times(log)[1:])
         if lone.any():
             yield _either(log, name, column, int(np.argmax(lone)) + 1, steps)
+
+
+def behind_lost_times(log: RunLog) -> Rows:
+    """Rows (n,) in front of which more rows went back in time, and were left out, than a filter can bridge: another log begins there."""
+    went_back = log.disordered.went_back if log.disordered else ()
+    return np.isin(log.t_s, [at_s for at_s, rows in went_back if rows > thresholds.BRIDGED_ROWS])
 
 
 def _beside_stands(leaps: Rows, values: Array) -> Rows:
@@ -96,7 +104,7 @@ def _not_back(leaps: Rows, values: Array) -> Rows:
     return kept
 
 
-def _new_references(log: RunLog, steps: Mapping[str, float]) -> Rows:
+def new_references(log: RunLog, steps: Mapping[str, float]) -> Rows:
     """Rows (n - 1,) behind which a reference leaps."""
     new: Rows = np.zeros(len(log.t_s) - 1, bool)
     for column in log.columns.outputs:

@@ -96,6 +96,17 @@ LONGEST_HOLD_ROWS = Count(64, "rows", "longest hold from one reading to the next
 LEAST_HELD_CHANGES = Count(60, "changes", "fewer changes show no rhythm")
 SAME_TURN_SHARE = Limit(0.995, "share", "of the changes that come at one turn")
 
+STALE_STEPS = Limit(
+    2.0, "least moves", "a row, before a repeated reading and behind it: slower, an encoder may repeat itself"
+)
+STALE_LEAP = Limit(
+    1.5,
+    "times the moves beside",
+    "that a repeated reading is made up for by: 2 where the axis goes on evenly, 1 at most where it stood",
+)
+LEAST_STALE_SHARE = Limit(0.001, "share of rows", "an encoder off by a step now and then: 7 in 100 000 rows by chance")
+LEAST_STALE = Count(3, "readings", "in a log", "213 honest logs: four have one, none two")
+
 # inputs
 SATURATED_SHARE = Limit(0.02, "share of rows", "more rows at a limit are worth a note")
 CLIPPED_SHARE = Limit(0.05, "share of rows", "at one extreme within the limits")
@@ -171,6 +182,13 @@ STANDING_S = Limit(
 )
 JITTER_PERIODS = Limit(0.01, "sample periods rms", "more is told")
 PERIOD_ERROR_PPM = Limit(500.0, "ppm", "beyond what a crystal does")
+
+# turned
+MIRRORED = Limit(
+    0.5,
+    "ratio",
+    "of the sum to the difference of the ways before and behind: a mirrored one is a third to three times as long",
+)
 
 # units
 UNIT_FACTOR = Limit(1.35, "factor", "a slope this near a unit's is that unit")

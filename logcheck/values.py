@@ -10,7 +10,7 @@ from logcheck import thresholds
 from logcheck.clipped import clipped_findings
 from logcheck.dead import dead_findings, read_again
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
-from logcheck.held import held_findings
+from logcheck.held import held_findings, stale_findings
 from logcheck.motion import wrap_findings
 from logcheck.seams import seam_findings
 from logcheck.standing import end_findings
@@ -105,6 +105,8 @@ def value_findings(
     held = list(held_findings(log, name))
     dead = held or list(dead_findings(log, name, steps, begins, positions, again))
     yield from dead
+    if not held:
+        yield from stale_findings(log, name, steps, positions)
     yield from end_findings(_without(log, dead), name, steps, begins, positions)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))

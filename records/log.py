@@ -42,10 +42,12 @@ class LogColumns:
 
 @dataclass(frozen=True)
 class Disordered:
-    """Rows of a file whose time does not rise: how many, and the first one's time."""
+    """Rows of a file whose time does not rise: how many, the first one's time; and where the log goes on behind such as are no row
+    written again, with how many these were."""
 
     rows: int
     first_s: float
+    went_back: tuple[tuple[float, int], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -178,7 +180,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     data["t_s"], spread = own_times(data["t_s"], readings, str(path))
     kept, late_inputs = _from_the_inputs(data, begins, columns)
     rising = _rising(data["t_s"])
-    disordered = Disordered(int((~rising).sum()), float(data["t_s"][~rising][0])) if not rising.all() else None
+    disordered = None if rising.all() else _disordered(data["t_s"], readings, rising)
     kept &= rising
     _check_numbers(data, kept, str(path), columns)
     demand_seconds(data["t_s"], float(sidecar["sample_period_s"]), str(path))
@@ -214,6 +216,18 @@ def _rising(t_s: Array) -> NDArray[np.bool_]:
     rising[ends[np.searchsorted(ends, np.flatnonzero(first))]] = True
     few = bool(np.isfinite(t_s).all()) and float((~rising).mean()) <= MOST_DISORDERED
     return rising if few else np.ones(len(t_s), bool)
+
+
+def _disordered(t_s: Array, y: Array, rising: NDArray[np.bool_]) -> Disordered:
+    """What is to be known of the rows (n,) that do not rise; those that are written again, reading for reading, went back by nothing."""
+    kept = np.flatnonzero(rising)
+    first = kept[np.minimum(np.searchsorted(t_s[kept], t_s), len(kept) - 1)]
+    again = (t_s == t_s[first]) & ((y == y[first]) | np.isnan(y)).all(axis=1)
+    back = (t_s < np.maximum.accumulate(t_s)) & ~again
+    edges = np.flatnonzero(np.diff(back, prepend=False, append=False)).reshape(-1, 2)
+    later = [(kept[kept >= last], last - first) for first, last in edges.tolist()]
+    went_back = tuple((float(t_s[on[0]]), count) for on, count in later if on.size)
+    return Disordered(int((~rising).sum()), float(t_s[~rising][0]), went_back)
 
 
 def _from_the_inputs(

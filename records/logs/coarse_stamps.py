@@ -32,9 +32,10 @@ class Spread:
     @property
     def told(self) -> str:
         """What is to be said of it."""
+        bear = "1 row bears" if self.rows == 1 else f"{self.rows} rows bear"
         return (
-            f"{self.rows} row{'' if self.rows == 1 else 's'} bear the stamp of the row before and readings of their own, first at "
-            f"{self.first_s:.6g} s: stamps are coarser than the rows, {self.period_s:.6g} s apart by their number; each has a time now"
+            f"{bear} the stamp of the row before and readings of their own, first at {self.first_s:.6g} s: stamps are coarser than the "
+            f"rows, {self.period_s:.6g} s apart by their number; each has a time now"
         )
 
 
@@ -53,7 +54,7 @@ def own_times(t_s: Array, y: Array, where: str) -> tuple[Array, Spread | None]:
 
     Raises BadInput where many samples do and nothing tells how far apart they are. Rows whose time goes back stay as they are.
     """
-    forward = np.flatnonzero(t_s >= np.maximum.accumulate(t_s))
+    forward = _forward(t_s)
     times, repeated = t_s[forward], np.diff(t_s[forward]) == 0.0
     if not repeated.any() or not _are_samples(repeated, y[forward]):
         return t_s, None
@@ -71,6 +72,14 @@ def own_times(t_s: Array, y: Array, where: str) -> tuple[Array, Spread | None]:
     counted = t_s.copy()
     counted[forward] = found
     return counted, Spread(int(repeated.sum()), first_s, float(f"{period_s:.6g}"))
+
+
+def _forward(t_s: Array) -> NDArray[np.int64]:
+    """Rows whose stamp is later than all before, and those that repeat such a one just behind it."""
+    begins = np.diff(t_s, prepend=np.nan) != 0.0
+    later = np.concatenate([[True], t_s[1:] > np.maximum.accumulate(t_s)[:-1]])
+    own = np.maximum.accumulate(np.where(begins, np.arange(len(t_s)), 0))
+    return np.flatnonzero(later[own])
 
 
 def _are_samples(repeated: NDArray[np.bool_], y: Array) -> bool:

@@ -1,15 +1,17 @@
 """A log as its stretches: where rows are missing it ends, and what follows is another one; rows at random times are no breaks."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from logcheck.breaks import break_findings, gaps, unbroken
+from logcheck.integrity import examine
 from logcheck.zeros import zero_findings
 from records.errors import BadInput
-from records.log import RunLog
-from tests.logcheck.test_parts import STEP_RAD, log_of, rounded
+from records.log import RunLog, load_log, save_log
+from tests.logcheck.test_parts import PLANT, STEP_RAD, log_of, rounded
 from tests.replay.firmware_flights import rows_of
 
 
@@ -82,3 +84,29 @@ def test_an_axis_that_often_rests_beside_zero_keeps_its_zeros_where_a_few_readin
     (found,) = zero_findings(replace(log, y=y), "a", "psi_rad", STEP_RAD)
     assert found.excluded is not None
     assert np.flatnonzero(found.excluded).tolist() == [1080, 1120]
+
+
+def read_back(log: RunLog, folder: Path) -> RunLog:
+    save_log(folder / "a.csv", log)
+    return load_log(folder / "a.csv", log.columns)
+
+
+@pytest.mark.parametrize(("back_s", "begins"), [(0.03, False), (0.045, True), (0.4, True)])
+def test_a_clock_that_was_set_back_loses_rows_and_what_follows_is_another_log(
+    back_s: float, begins: bool, tmp_path: Path
+) -> None:
+    """Truth: rows that lie further apart in time than their stamps say, once those are left out whose times had been."""
+    log = log_of()
+    t_s = np.where(np.arange(2000) < 1000, log.t_s, log.t_s - back_s)
+    read = read_back(replace(log, t_s=t_s), tmp_path)
+    (entry,) = examine([read], PLANT, names=["a"]).logs
+    assert bool(entry.begins.any()) is begins
+    assert not begins or np.flatnonzero(entry.begins).tolist() == [1000]
+
+
+def test_a_clock_that_was_set_back_bears_no_stamps_coarser_than_the_rows(tmp_path: Path) -> None:
+    log = log_of()
+    read = read_back(replace(log, t_s=np.where(np.arange(2000) < 1000, log.t_s, np.round(log.t_s - 0.3, 2))), tmp_path)
+    assert read.spread is None
+    assert read.disordered is not None
+    assert read.disordered.rows == 30

@@ -87,3 +87,18 @@ def test_a_log_that_ends_at_rest_behind_a_move_that_its_axis_often_makes_was_not
     assert list(off_findings(rest, "a", PLANT, STEPS)) == []
     y[1990:, 0] = y[1989, 0] + 60 * STEP_RAD
     assert [found.finding.kind for found in off_findings(replace(rest, y=y), "a", PLANT, STEPS)] == ["switched_off"]
+
+
+def test_a_recorder_that_stood_is_told_by_an_axis_that_leaps_with_the_next_command(arm: BoundPlant) -> None:
+    """Truth: nothing was written from row 900 to row 1000, where the arm rested, and meanwhile the input stepped and the arm followed."""
+    log = fly(arm)
+    rest, away = log.y[0, 0], 100.0 * arm.plant.sensors["theta_rad"]
+    y, u = np.full_like(log.y, rest), np.full_like(log.u, 1.0)
+    y[:300, 0] += 0.5 * away * np.sin(0.05 * np.arange(300))
+    y[1000:, 0] = np.round((rest + away) / arm.plant.sensors["theta_rad"]) * arm.plant.sensors["theta_rad"]
+    u[1000:] = 2.0
+    stood = replace(log, y=y, u=u, loop="open")
+    (found,) = [entry for entry in examine([stood], arm, names=["a"]).findings if entry.kind == "dead_stretch"]
+    assert found.end_s == pytest.approx(log.t_s[999])
+    (looked,) = examine([stood], arm, names=["a"]).logs
+    assert np.flatnonzero(looked.begins).tolist() == [1000]

@@ -1,0 +1,75 @@
+"""An axis whose reading changes its sign within a log: a decoder set up anew, two files of different conventions joined.
+
+It leaps from y to -y within a row, and goes on as it went, mirrored. No sensor that slips and no other recording does so, but by chance:
+these go on from any angle, and the axis in its own direction; where it rests, another recording begins with other inputs. Which of the two
+signs is the right one, nothing in the column tells.
+"""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from logcheck import thresholds
+from logcheck.finding import REFUSE, Array, Finding, Found, Rows
+from logcheck.seams import new_references
+from records.log import RunLog
+from records.text.units import unit_of
+from sim.bind import BoundPlant
+
+SHOWN = 3
+SIDE = int(thresholds.SEAM_ROWS)
+
+
+def turned_findings(log: RunLog, name: str, bound: BoundPlant, steps: Mapping[str, float]) -> Iterator[Found]:
+    """Outputs that are an axis' position or speed, and whose sign turns; not where a reference leaps too, as another flight may begin."""
+    states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
+    flights = np.concatenate([[0], np.cumsum(new_references(log, steps))])
+    for column, expression in bound.model.outputs.items():
+        if str(expression) not in states:
+            continue
+        read = np.isfinite(log.column(column))
+        t_s, values = log.t_s[read], log.column(column)[read]
+        rows = _turns(t_s, values, log.u[read], log.sample_period_s, steps.get(column, 0.0))
+        rows = rows[flights[read][rows] == flights[read][rows - 1]]
+        if rows.size:
+            yield _found(log, name, column, t_s, values, rows)
+
+
+def _found(log: RunLog, name: str, column: str, t_s: Array, values: Array, rows: NDArray[np.int64]) -> Found:
+    at = ", ".join(f"{t:.6g} s" for t in t_s[rows[:SHOWN]])
+    more = f" and {len(rows) - SHOWN} times more" if len(rows) > SHOWN else ""
+    leap = f"from {values[rows[0] - 1]:.4g} it leaps to {values[rows[0]]:.4g} {unit_of(column) or ''}".rstrip()
+    sentence = f"the sign of {column} turns at {at}{more}: {leap} within a row, and goes on mirrored"
+    remedy = f"turn the sign of {column} in front of it or behind it, or leave one part out"
+    span = (float(t_s[rows[0]]), float(t_s[rows[-1]]))
+    return Found(Finding("sign_turns", name, column, *span, sentence, REFUSE, 0, "one sign in all rows", remedy))
+
+
+def _turns(t_s: Array, values: Array, u: Array, period_s: float, step: float) -> NDArray[np.int64]:
+    """The rows whose reading is minus what it would be if the axis went on."""
+    if len(values) < 2 * SIDE + 2:
+        return np.zeros(0, np.int64)
+    moves, passed_s = np.diff(values), np.diff(t_s)
+    near = _largest_beside(np.abs(moves) / passed_s) * passed_s
+    leaps = np.abs(moves) > np.maximum(thresholds.SEAM_FASTER * near, thresholds.LEAST_SEAM_STEPS * step)
+    leaps &= passed_s < (thresholds.BRIDGED_ROWS + 1.5) * period_s  # beyond it, the axis may be anywhere
+    to_its_mirror = leaps & (np.abs(values[1:] + values[:-1]) <= near + step)
+    rows = np.flatnonzero(to_its_mirror[SIDE:-SIDE]) + SIDE + 1
+    came, went = values[rows - 1] - values[rows - 1 - SIDE], values[rows + SIDE] - values[rows]
+    is_moving = np.minimum(np.abs(came), np.abs(went)) > 0.5 * SIDE * near[rows - 1]
+    is_mirrored = np.abs(came + went) < thresholds.MIRRORED * np.abs(came - went)
+    return np.asarray(rows[np.where(is_moving, is_mirrored, _go_on(u)[rows - 1])])
+
+
+def _largest_beside(speeds: Array) -> Array:
+    """The largest (n, ...) of those of the SIDE rows before and behind, without the row's own."""
+    padded = np.pad(speeds, [(SIDE, SIDE)] + [(0, 0)] * (speeds.ndim - 1))
+    return np.asarray(np.max([padded[at : at + len(speeds)] for at in range(2 * SIDE + 1) if at != SIDE], axis=0))
+
+
+def _go_on(u: Array) -> Rows:
+    """Steps (n - 1,) between rows over which every input (n, inputs) moves as it does beside, or by little of its range."""
+    moves = np.abs(np.diff(u, axis=0))
+    usual = np.maximum(_largest_beside(moves), thresholds.DRIVEN_SHARE * np.ptp(u, axis=0))
+    return np.asarray((moves <= usual).all(axis=1))
