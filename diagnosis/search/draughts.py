@@ -1,7 +1,9 @@
 """Torques that come and go: noise of the plant, and told as a gust where nothing else is missing and they are more than a rig's usual."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decisions import decided
@@ -51,8 +53,7 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
     Where it does so beside the best, evidence under it is not to be compared with evidence without. Of each number of effects those are
-    asked that it could bring near, and the likeliest of all once more without each of its effects: whether one is needed is asked under one
-    noise.
+    asked that it could bring near; then what is hardly told from those that lead, and the likeliest without each of its effects.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
     near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.NEAR_BEST)
@@ -62,33 +63,50 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
         return []
     sizes = {len(entry.effects) for entry in fitted}
     others = [[entry for entry in ranked if len(entry.effects) == size and entry is not best] for size in sizes]
-    asked = [entry for group in others for entry in _in_reach(case, best, first, group)]
+    asked = [entry for group in others for entry in _in_reach(case, first, group)]
     found = [first, *_all_noisy(case, asked, first)]
-    known, likeliest = {frozenset(entry.effects) for entry in found}, max(found, key=lambda entry: entry.evidence)
-    fewer = [
-        entry
-        for entry in fitted
-        if len(entry.effects) == len(likeliest.effects) - 1 and set(entry.effects) < set(likeliest.effects)
-    ]
-    return [*found, *_all_noisy(case, [entry for entry in fewer if frozenset(entry.effects) not in known], first)]
+    known = {frozenset(entry.effects) for entry in found}
+    beside = [*_twins(case, ranked, found), *_fewer(ranked, max(found, key=lambda entry: entry.evidence))]
+    further = [entry for entry in dict.fromkeys(beside) if frozenset(entry.effects) not in known]
+    return [*found, *_all_noisy(case, further, first)]
+
+
+def _twins(
+    case: Case, fitted: Sequence[FittedHypothesis], found: Sequence[FittedHypothesis]
+) -> Iterator[FittedHypothesis]:
+    """What is hardly told from those that now lead: between twins noise decides, so that those are asked which lacked no more than it
+    gained beside the other."""
+    before = {frozenset(entry.effects): entry for entry in fitted}
+    least = max(entry.evidence for entry in found) - decisions.NEAR_BEST
+    for entry in found:
+        own = before[frozenset(entry.effects)]
+        gained = entry.evidence - own.evidence if entry.evidence > least else -np.inf
+        yield from (other for other in hardly_told(case, own, fitted) if own.evidence - other.evidence <= gained)
+
+
+def _fewer(fitted: Sequence[FittedHypothesis], likeliest: FittedHypothesis) -> Iterator[FittedHypothesis]:
+    """The likeliest without each of its effects: whether one is needed is asked under one noise."""
+    fewer = len(likeliest.effects) - 1
+    return (entry for entry in fitted if len(entry.effects) == fewer and set(entry.effects) < set(likeliest.effects))
 
 
 def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypothesis) -> list[FittedHypothesis]:
     """Those asked, fitted under the noise of the first; with their own those that it could bring near the likeliest, but for those in which
     it would be more than noise.
 
-    What lacks the same shows the same in its innovations: noise that the one with the furthest reach has is tried beside the others.
+    The likeliest of them goes first: beside what it then has others may be out of reach, and what lacks the same as it shows the same in
+    its innovations, so that its noise is tried beside them.
     """
-    begun = thread_map(lambda entry: _under_noise_of(case, entry, first), asked)
-    least = max(entry.evidence for entry in (first, *begun)) - decisions.NEAR_BEST
-    reach = dict(zip(asked, thread_map(lambda under: _reach(case, under, first), begun), strict=True))
-    far = [under for entry, under in zip(asked, begun, strict=True) if reach[entry] < least]
-    near = sorted((entry for entry in asked if reach[entry] >= least), key=lambda entry: -reach[entry])
-    if not near:
-        return far
-    lead = _own_noise(case, near[0], [first], least)
+    begun = dict(zip(asked, thread_map(lambda entry: _under_noise_of(case, entry, first), asked), strict=True))
+    reach = dict(zip(asked, thread_map(lambda entry: _reach(case, begun[entry], first), asked), strict=True))
+    least = max(entry.evidence for entry in (first, *begun.values())) - decisions.NEAR_BEST
+    near = sorted((entry for entry in asked if reach[entry] >= least), key=lambda entry: -begun[entry].evidence)
+    lead = _own_noise(case, near[0], [first], least) if near else None
     known = [first] if lead is None else [first, lead]
-    return [*far, *filter(None, [lead, *thread_map(lambda entry: _own_noise(case, entry, known, least), near[1:])])]
+    least = max(least, *(entry.evidence - decisions.NEAR_BEST for entry in known))
+    rest = [entry for entry in near[1:] if reach[entry] >= least]
+    own = [lead, *thread_map(lambda entry: _own_noise(case, entry, known, least), rest)]
+    return [*(begun[entry] for entry in asked if entry not in (*near[:1], *rest)), *filter(None, own)]
 
 
 def _reach(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> float:
@@ -140,13 +158,10 @@ def _has_memory(case: Case, fitted: FittedHypothesis) -> bool:
     return bool(gust_shares(case, hypothesis) or hypothesis.reading_noise)
 
 
-def _in_reach(
-    case: Case, own: FittedHypothesis, noisy: FittedHypothesis, others: Sequence[FittedHypothesis]
-) -> list[FittedHypothesis]:
-    """Those of the others that noise with a memory could bring near the likeliest, `own`, which has become `noisy` with its own, those that
-    it could bring furthest: under the noise of that one, or under another that their innovations foretell. Between twins noise decides:
-    they are asked where they lack no more than it gained."""
-    left, gained = _foretold(case, noisy), noisy.evidence - own.evidence
+def _in_reach(case: Case, noisy: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
+    """Those of the others, best first, that noise with a memory could bring near the likeliest with its own, `noisy`: under its noise, or
+    under another that their innovations foretell. The best of them with what is hardly told from it, and those that could come furthest."""
+    left = _foretold(case, noisy)
 
     def promised(entry: FittedHypothesis) -> float:
         return entry.evidence + max(
@@ -154,12 +169,9 @@ def _in_reach(
         )
 
     reach = dict(zip(others, thread_map(promised, others), strict=True))
-    furthest = sorted(
-        (entry for entry in others if reach[entry] >= noisy.evidence - decisions.NEAR_BEST),
-        key=lambda entry: -reach[entry],
-    )
-    twins = [entry for entry in hardly_told(case, own, others) if own.evidence - entry.evidence <= gained]
-    return list(dict.fromkeys([*furthest[: decisions.SETTLED_FITS], *twins]))
+    near = [entry for entry in others if reach[entry] >= noisy.evidence - decisions.NEAR_BEST]
+    furthest = sorted(near, key=lambda entry: -reach[entry])[: decisions.SETTLED_FITS]
+    return list(dict.fromkeys([*near[:1], *furthest]))
 
 
 def _further(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> float:

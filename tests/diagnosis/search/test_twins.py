@@ -205,6 +205,19 @@ def test_noise_is_sought_beside_what_foretells_another_of_its_own(late: Case) ->
         assert (drive.effects in found) is asked
 
 
+def test_between_twins_noise_decides_where_one_lacks_no_more_than_it_gained(late: Case) -> None:
+    # Truth: noise gains some hundred nats beside the drive's lag; the sensor's, its twin, is asked where it lacks nine tenths of that,
+    # which no bound brings near, and not where it lacks more than all of it.
+    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    (noisy,) = with_noise_beside(late, [drive])
+    gained = noisy.evidence - drive.evidence
+    with decisions.changed("PARAMETERS_BACK", 0.0):  # whatever its own innovations foretell
+        for lacked, asked in ((0.9, True), (1.1, False)):
+            entry = replace(sensor, evidence=drive.evidence - lacked * gained)
+            found = {one.effects for one in with_noise_beside(late, [drive, entry])}
+            assert (sensor.effects in found) is asked
+
+
 def test_own_noise_is_not_sought_beside_what_stays_out_of_reach_under_noise_that_is_known(late: Case) -> None:
     # Truth: the noise of the drive's lag, with numbers that are the sensor's, is what a search that begins with it finds; far from what
     # could lead no other is sought, in reach another may be likelier and is never less.
