@@ -76,6 +76,7 @@ def _number(cell: str, path: Path, line: int) -> float:
 
 
 def _row_length(path: Path, line: int, got: int, expected: int) -> BadInput:
-    return BadInput(
-        "row", f"{path}, line {line}", f"{got} cells", f"{expected}, as the header", "the row is truncated: remove it"
-    )
+    remedy = "the row is truncated: remove it"
+    if got > expected:
+        remedy = "give what follows as a log of its own where another table begins there; `twinlaw import` reads decimal commas"
+    return BadInput("row", f"{path}, line {line}", f"{got} cells", f"{expected}, as the header", remedy)

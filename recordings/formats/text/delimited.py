@@ -25,7 +25,7 @@ from recordings.formats.text.headings import name_and_unit
 from recordings.formats.text.layout import Layout, find_layout
 from recordings.formats.text.lines import Line
 from recordings.formats.text.long_form import as_wide
-from recordings.formats.text.monitor import as_table
+from recordings.formats.text.monitor import OF_NAMED, as_table
 from recordings.formats.text.others import demand_table
 from recordings.formats.text.splitting import SEPARATORS, split
 from recordings.formats.text.thousands import ungrouped
@@ -71,7 +71,10 @@ def of_text(text: str, asked: TextLayout, where: str) -> Contents:
     if not text.endswith(("\n", "\r")):
         body, left_out = without_cut_cell(body, left_out, layout)
     _check_upright(body, layout, where)
-    told = (*monitored, *layout.found, *_comments(comments), *left_out)
+    of_cells = (
+        2 if any(note.startswith(OF_NAMED) for note in monitored) else 0
+    )  # their separator and heading: none are in such a file
+    told = (*monitored, *layout.found[of_cells:], *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
     singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
     signals, turned = _oldest_first(with_clocks(with_clocks_in_front(signals)))

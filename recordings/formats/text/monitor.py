@@ -9,6 +9,10 @@ from recordings.formats.text.lines import Line
 MOST = 0.9  # of the lines must be written so: the first may be cut, and a program greets before it logs
 FEWEST_PAIRS = 2  # of name and number in a line: one may stand in any sentence
 SAMPLE_LINES = 400  # of which most must be: as for the layout of a table
+OF_NAMED = (
+    "a name in front of each number",
+    "a signal a line",
+)  # begin what is said of lines that have neither cells nor a heading
 TIME = "time"  # the heading of stamps
 _STAMP = r"(?:[\d./-]{8,10}[ T])?\d{1,2}:\d\d:\d\d(?:[.,:]\d+)?|\d+(?:\.\d+)?"
 _STAMPED = re.compile(
@@ -27,7 +31,7 @@ def as_table(lines: Sequence[Line]) -> tuple[list[Line], tuple[str, ...]]:
     """The lines as those of a table, where most of them are written so, and what is to be said of it; else as they are."""
     plot = _as_plot(lines)
     if plot is not None:
-        return plot, ("a signal a line, as Teleplot takes it",)
+        return plot, (f"{OF_NAMED[1]}, as Teleplot takes it",)
     plain, stamped = _without_stamps(_without_brackets(lines))
     table, named = _without_names(plain)
     return table, (*stamped, *named)
@@ -100,7 +104,7 @@ def _without_names(lines: Sequence[Line]) -> tuple[list[Line], tuple[str, ...]]:
         if own
     ]
     heading = Line(rows[0].number, "\t".join([*([TIME] if stamped else []), *names]))
-    return [heading, *rows], (f"a name in front of each number: {', '.join(names)}"[:200],)
+    return [heading, *rows], (f"{OF_NAMED[0]}: {', '.join(names)}"[:200],)
 
 
 def _pairs(text: str) -> tuple[str, dict[str, str]]:

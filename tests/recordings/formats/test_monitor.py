@@ -45,6 +45,13 @@ def test_what_stands_around_the_numbers_becomes_times_and_names(name: str, tmp_p
     assert any("in front of each" in told for told in found.found)
 
 
+@pytest.mark.parametrize(("name", "told"), [("printf", False), ("a stamp in front of a table", True)])
+def test_cells_and_a_heading_are_told_where_the_file_has_them(name: str, told: bool, tmp_path: Path) -> None:
+    (tmp_path / "log.txt").write_text(FILES[name])
+    found = read(tmp_path / "log.txt", FOUND).found
+    assert any(entry.startswith(("cells separated", "header in line")) for entry in found) is told
+
+
 def test_a_line_without_one_of_the_names_has_no_number_for_it(tmp_path: Path) -> None:
     (tmp_path / "log.txt").write_text(FILES["printf"].replace(", u_V=1.6000", ""))
     values = read(tmp_path / "log.txt", FOUND).signals["u_V"].values
