@@ -90,7 +90,11 @@ def examine(
     return Integrity(tuple(_examined(log, name, own, facts) for log, name, own in examined), tuple(findings))
 
 
-OTHER_UNITS = ("time_unit", "unit_slip")  # kinds of findings: such numbers can be neither replayed nor predicted
+OTHER_NUMBERS = (
+    "time_unit",
+    "unit_slip",
+    "sign_turns",
+)  # kinds of findings: such numbers can be neither replayed nor predicted
 
 
 def demand(integrity: Integrity, kinds: Collection[str] | None = None) -> None:

@@ -58,8 +58,17 @@ def _turns(t_s: Array, values: Array, u: Array, period_s: float, step: float) ->
     rows = np.flatnonzero(to_its_mirror[SIDE:-SIDE]) + SIDE + 1
     came, went = values[rows - 1] - values[rows - 1 - SIDE], values[rows + SIDE] - values[rows]
     is_moving = np.minimum(np.abs(came), np.abs(went)) > 0.5 * SIDE * near[rows - 1]
+    is_moving &= _is_even(values, rows - 1, -2) & _is_even(
+        values, rows, 2
+    )  # where it turns about, its direction tells nothing
     is_mirrored = np.abs(came + went) < thresholds.MIRRORED * np.abs(came - went)
     return np.asarray(rows[np.where(is_moving, is_mirrored, _go_on(u)[rows - 1])])
+
+
+def _is_even(values: Array, rows: NDArray[np.int64], two: int) -> Rows:
+    """Whether the column goes half as far in the `two` rows next to each of the rows as in the two beyond, and more."""
+    near, beyond = values[rows + two] - values[rows], values[rows + 2 * two] - values[rows + two]
+    return np.asarray(near * beyond >= 0.5 * beyond**2)
 
 
 def _largest_beside(speeds: Array) -> Array:
@@ -69,7 +78,9 @@ def _largest_beside(speeds: Array) -> Array:
 
 
 def _go_on(u: Array) -> Rows:
-    """Steps (n - 1,) between rows over which every input (n, inputs) moves as it does beside, or by little of its range."""
+    """Steps (n - 1,) between rows over which every input (n, inputs) moves as it does beside, as it usually does, or by little of its
+    range."""
     moves = np.abs(np.diff(u, axis=0))
-    usual = np.maximum(_largest_beside(moves), thresholds.DRIVEN_SHARE * np.ptp(u, axis=0))
+    often = np.percentile(moves, thresholds.USUAL_SPEED_PERCENT, axis=0)
+    usual = np.maximum(_largest_beside(moves), np.maximum(often, thresholds.DRIVEN_SHARE * np.ptp(u, axis=0)))
     return np.asarray((moves <= usual).all(axis=1))

@@ -9,6 +9,7 @@ cause: then it says that none was found. Other firmwares are known in floating p
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from replay.flight import ReplayedLog, flight_of, has_replayable_columns
 from replay.law import FLOAT32, FLOAT64
 from replay.printed import agrees_as_printed
 from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channel_cause, explain
+from replay.variants import EARLY_OUTPUT
 
 NOT_FOUND = "not_found"
 IN_DOUBLE = "flown_in_double"
@@ -71,6 +73,18 @@ class FirmwareReplay:
         """The record of diagnosis.json."""
         cause = None if self.cause is None else f"{self.cause}: {self.sentence}"
         return Firmware(self.replayed, self.bit_exact, self.first_difference_s, cause)
+
+
+def demand_causal(path: Path, replay: FirmwareReplay) -> None:
+    """Raise BadInput where the controller's own code gives the logged commands only in later rows: none answers what it has yet to read."""
+    if EARLY_OUTPUT in (replay.cause or "").split(" + "):
+        raise BadInput(
+            "columns",
+            str(path),
+            f"commands in rows before those of the angles that they answer: {replay.sentence}",
+            "columns in the rows of their time",
+            "move the commands down, or the angles and references up",
+        )
 
 
 def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[ControllerTable] = ()) -> FirmwareReplay:

@@ -31,7 +31,9 @@ def at_rest(log: RunLog) -> RunLog:
     return replace(log, y=y)
 
 
-@pytest.mark.parametrize("row", [700, 1000, 1300])
+@pytest.mark.parametrize(
+    "row", [700, 1000, 1300, int(np.argmax(log_of().y[:, 1])), int(np.argmin(log_of().y[:, 1])) + 2]
+)
 def test_a_sign_that_turns_is_refused_with_its_column_and_time(row: int) -> None:
     with pytest.raises(BadInput, match=rf"the sign of phi_rad turns at {0.01 * row:g} s.*turn the sign of phi_rad"):
         demand(examine([turned(log_of(), row)], PLANT, names=["a"]))

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from controllers import loading
-from logcheck.integrity import OTHER_UNITS, as_read, demand, examine
+from logcheck.integrity import OTHER_NUMBERS, as_read, demand, examine
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import load_log, plant_of_log
@@ -55,7 +55,7 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
     if is_log(asked.port):
         log = load_log(Path(asked.port), log_columns(bound.model))
         looked = examine([log], without_effects(bound) if bound.effects else bound, names=[Path(asked.port).stem])
-        demand(looked, OTHER_UNITS)
+        demand(looked, OTHER_NUMBERS)
         odd = "".join(f"; {note.said}" for note in looked.notes)
         first_s = float(log.t_s[0])
         counted = f"; times of the curves count from {first_s:g} s of the log" if first_s else ""

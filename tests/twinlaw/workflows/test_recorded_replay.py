@@ -25,6 +25,20 @@ def test_a_log_is_compared_and_what_explains_its_difference_is_said(tmp_path: Pa
     assert said.startswith("late.csv: the firmware sent its output one sample late")
 
 
+def test_a_log_whose_columns_are_wrong_is_refused_and_not_laid_on_the_firmware(tmp_path: Path) -> None:
+    """Truth: the commands a row early, and from row 1000 on the other sign of phi; both are the log's."""
+    early = replace(own(), u=np.concatenate([own().u[1:], own().u[-1:]]))
+    save_log(tmp_path / "early.csv", early)
+    with pytest.raises(BadInput, match="commands in rows before those of the angles that they answer"):
+        recorded_replay(tmp_path / "early.csv", ce150_table(), plant())
+    turned = own().y.copy()
+    at = int(np.argmax(np.abs(turned[500:1500, 1] * np.diff(turned[499:1500, 1])))) + 500  # far out and under way
+    turned[at:, 1] *= -1.0
+    save_log(tmp_path / "turned.csv", replace(own(), y=turned))
+    with pytest.raises(BadInput, match=f"the sign of phi_rad turns at {own().t_s[at]:g} s"):
+        recorded_replay(tmp_path / "turned.csv", ce150_table(), plant())
+
+
 def test_a_log_of_a_plant_that_nobody_knows_is_told_with_the_plant_that_was_given(tmp_path: Path) -> None:
     save_log(tmp_path / "own.csv", replace(own(), columns=replace(own().columns, plant="tank")))
     with pytest.raises(BadInput, match="plant: got 'tank', expected 'ce150'; give the log and the plant of one rig"):

@@ -9,14 +9,14 @@ from codegen.law import generate_law
 from codegen.law_equations import state_words
 from codegen.scales import fastest, room, widest_reference
 from design.structure import stops
-from logcheck.integrity import OTHER_UNITS, as_read, examine
+from logcheck.integrity import OTHER_NUMBERS, as_read, examine
 from logcheck.integrity import demand as demand_log
 from records.board import STM32G071
 from records.errors import VerificationFailed
 from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
-from replay.firmware import CLEARED
+from replay.firmware import CLEARED, demand_causal
 from replay.flight import has_replayable_columns
 from replay.stretches import replay_stretches
 from rig.emulator.board import EmulatedBoard
@@ -182,7 +182,7 @@ def recorded_replay(
     begins, unread = None, False
     if log.columns == log_columns(bound.model):
         found = examine([log], bound, names=[path.stem])
-        demand_log(found, OTHER_UNITS)
+        demand_log(found, OTHER_NUMBERS)
         begins, unread = found.logs[0].begins, bool(found.logs[0].unread.any())
         if (
             unread and replay_stretches(log, table, begins=begins).bit_exact
@@ -193,6 +193,7 @@ def recorded_replay(
     if replayed.bit_exact and unread:
         said = "with the readings that the law had in place of those that were left out, every bit agrees"
         return replace(replay, sent=None), f"{path.name}: {said}; its inputs are not compared bit by bit"
+    demand_causal(path, replayed)
     if replayed.cause not in CLEARED:
         return replay, None if replayed.cause is None else f"{path.name}: {replayed.sentence}"
     return replace(replay, sent=None), f"{path.name}: {replayed.sentence}; its inputs are not compared bit by bit"

@@ -16,9 +16,8 @@ from records.log import RunLog, load_log
 from records.plant import load_plant
 from records.reasons import Note
 from records.table import ControllerTable
-from replay.firmware import FirmwareReplay
+from replay.firmware import FirmwareReplay, demand_causal
 from replay.table import replay_log, table_of
-from replay.variants import EARLY_OUTPUT
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
@@ -50,7 +49,9 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     demand(integrity)
     paths = (*logs, *holdout)
     replays = [_replayed(*entry) for entry in zip(read, paths, integrity.logs, strict=True)]
-    _demand_causal(paths, replays)
+    for path, replay in zip(paths, replays, strict=True):
+        if replay is not None:
+            demand_causal(path, replay)
     firmware, told = _firmware(paths, replays)
     timed, counted = from_their_start([as_read(*entry) for entry in zip(read, integrity.logs, strict=True)], names)
     used, begins = [~entry.excluded for entry in integrity.logs], [entry.begins for entry in integrity.logs]
@@ -79,19 +80,6 @@ def _replayed(log: RunLog, path: Path, looked: LogIntegrity) -> FirmwareReplay |
         return whole
     read = replay_log(as_read(log, looked), path, begins=looked.begins)
     return whole if differs(None if read is None else read.record()) else read
-
-
-def _demand_causal(paths: Sequence[Path], replays: Sequence[FirmwareReplay | None]) -> None:
-    """Raise BadInput where the controller's own code gives the logged commands only in later rows: none answers what it has yet to read."""
-    for path, replay in zip(paths, replays, strict=True):
-        if replay is not None and EARLY_OUTPUT in (replay.cause or "").split(" + "):
-            raise BadInput(
-                "columns",
-                str(path),
-                f"commands in rows before those of the angles that they answer: {replay.sentence}",
-                "columns in the rows of their time",
-                "move the commands down, or the angles and references up",
-            )
 
 
 def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> ControllerTable | None:
