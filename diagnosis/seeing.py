@@ -19,7 +19,7 @@ from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Held, Material, Seen
-from diagnosis.search.beam import Alone, alone
+from diagnosis.search.beam import Alone, FirstFits, alone, first_fits
 from diagnosis.search.draughts import gust_shares, without_memory
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -68,17 +68,18 @@ def _detected(
     seen = replace(scored(case, checked, nominal, between), held=held, beside=beside)
     if not alarmed(seen.detection.p):
         return seen
-    seen = _with_names(seen)
-    best = alone_of(seen.still or seen).best(1)[0]
+    seen = replace(seen, still=_still(seen))
+    names = _first_fits(seen.still or seen)
+    best = names.best
     again = plain_beside(case, best.fit, nominal)
     if again is None:
-        return seen
+        return _with_names(seen, names)
     gain = evidence(again, case.library.effects) - seen.retuned.evidence
     better = gain > decisions.TAKEN_IN
     outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
     if not better:
-        return seen.because(rule)
+        return _with_names(seen, names).because(rule)
     return replace(scored(case, checked, with_memory(case, again), (*between, rule)), held=held, beside=beside)
 
 
@@ -114,7 +115,11 @@ def beside_noise(seen: Seen) -> Seen:
 
 def alone_of(seen: Seen) -> Alone:
     """Its single effects, fitted where that was not done yet."""
-    return seen.begun or alone(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
+    return seen.begun or alone(seen.case, _first_fits(seen))
+
+
+def _first_fits(seen: Seen) -> FirstFits:
+    return first_fits(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
 
 
 def alarmed(p: float) -> bool:
@@ -127,12 +132,13 @@ def false_alarm(of: str, p: float) -> Decision:
     return decided("false_alarm", of, p, decisions.ALARM, "a cause is looked for" if alarmed(p) else "no gap")
 
 
-def _with_names(seen: Seen) -> Seen:
-    """The same with single effects as fitted, without noise with a memory where the plant has any: beside that they explain little."""
-    still = seen.still or _still(seen)
-    if still is None:
-        return replace(seen, begun=alone_of(seen))
-    return replace(seen, still=replace(still, begun=alone_of(still)))
+def _with_names(seen: Seen, names: FirstFits) -> Seen:
+    """The same with single effects as fitted from where they begin: without noise with a memory where the plant has any, as beside that
+    they explain little."""
+    found = alone(seen.case, names)
+    if seen.still is None:
+        return replace(seen, begun=found)
+    return replace(seen, still=replace(seen.still, begun=found))
 
 
 def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:

@@ -25,6 +25,23 @@ TOLD = 4  # hypotheses left out that are told of
 
 
 @dataclass(frozen=True, eq=False)
+class FirstFits:
+    """Single effects `begun` from the nominal plant, none fitted to its end, and those that are `found` otherwise; `linearisation` and
+    `score_tests` are those of the nominal plant."""
+
+    found: Mapping[frozenset[str], FittedHypothesis]
+    begun: tuple[FittedHypothesis, ...]
+    nominal: FittedHypothesis
+    linearisation: Linearisation
+    score_tests: tuple[ScoreTest, ...]
+
+    @property
+    def best(self) -> FittedHypothesis:
+        """The likeliest of them and the nominal plant."""
+        return max((*self.found.values(), *self.begun, self.nominal), key=lambda entry: entry.evidence)
+
+
+@dataclass(frozen=True, eq=False)
 class Alone:
     """Single effects as fitted, the nominal plant, and the effects that are worth a costly score test beside others;
     `linearisation` and `score_tests` are
@@ -60,30 +77,36 @@ class Search:
         return next((entry for entry in self.fitted if frozenset(entry.effects) == wanted), None)
 
 
-def alone(
+def first_fits(
     case: Case,
-    first: FittedHypothesis,
+    nominal: FittedHypothesis,
     linearisation: Linearisation,
     score_tests: Sequence[ScoreTest],
     lossy: Fit | None = None,
     beside: FittedHypothesis | None = None,
-) -> Alone:
-    """Fit the nominal plant with single effects; `first` is that plant without any, `score_tests` those from there, `lossy` its
-    fit with lost frames, `beside` what was fitted already: a search begun anew may not lead there."""
-    nominal = first.fit
-    worth = _worth(score_tests)
+) -> FirstFits:
+    """Begin to fit the `nominal` plant with single effects; `score_tests` are those from there, `lossy` its fit with lost frames, `beside`
+    what was fitted already: a search begun anew may not lead there."""
     found: dict[frozenset[str], FittedHypothesis] = {}
     if lossy is not None and case.library.losses is not None:
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
     least = max(decisions.LEAST_GAIN, decisions.NEARLY_AS_GOOD * score_tests[0].gain) if score_tests else 0.0
-    jobs = _promising(nominal, score_tests, least)[: decisions.SINGLES]
-    jobs += _promising(nominal, scored_as_stated(case, nominal), least)[: decisions.SINGLES]
-    _fit_all(case, jobs, found, first)
+    jobs = _promising(nominal.fit, score_tests, least)[: decisions.SINGLES]
+    jobs += _promising(nominal.fit, scored_as_stated(case, nominal.fit), least)[: decisions.SINGLES]
+    begun = _begun(case, jobs, found)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
+    return FirstFits(found, tuple(begun), nominal, linearisation, tuple(score_tests))
+
+
+def alone(case: Case, first: FirstFits) -> Alone:
+    """Fit single effects to their end, from where they begin."""
+    found: dict[frozenset[str], FittedHypothesis] = {}
+    _end(case, first.begun, found, first.nominal)
+    keep_better(found, first.found.values())
     if found:
         fit_twins(case, found, _best(found))
-    return Alone(found, first, worth, linearisation, tuple(score_tests))
+    return Alone(found, first.nominal, _worth(first.score_tests), first.linearisation, first.score_tests)
 
 
 def scored_as_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
@@ -103,7 +126,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown, worth = _grown(case, best, names, worth)
-        if not grown or not _fit_all(case, grown, found, best[0]):
+        if not _end(case, _begun(case, grown, found), found, best[0]):
             break
         exchange(case, found, worth)
         shrink(case, found)
@@ -271,20 +294,24 @@ def _grown(
     return ([job for own in (first, *others) for job in own] if first else []), worth
 
 
-def _fit_all(
-    case: Case,
-    jobs: Sequence[Job],
-    found: dict[frozenset[str], FittedHypothesis],
-    known: FittedHypothesis,
-) -> bool:
-    """Fit each job that is new, those to the end whose first fit gains most over what is `known`; whether anything was added."""
+def _begun(case: Case, jobs: Sequence[Job], known: Mapping[frozenset[str], FittedHypothesis]) -> list[FittedHypothesis]:
+    """The first fit of each job that is new."""
     fresh: dict[frozenset[str], Job] = {}
     for job in jobs:
         fresh.setdefault(frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect)), job)
-    wanted = [job for names, job in fresh.items() if names not in found]
+    wanted = [job for names, job in fresh.items() if names not in known]
     firsts: dict[frozenset[str], FittedHypothesis] = {}
     keep_better(firsts, (entry for entry in thread_map(lambda job: rough(case, job), wanted) if entry))
-    begun = list(firsts.values())
+    return list(firsts.values())
+
+
+def _end(
+    case: Case,
+    begun: Sequence[FittedHypothesis],
+    found: dict[frozenset[str], FittedHypothesis],
+    known: FittedHypothesis,
+) -> bool:
+    """Fit those to the end that gain most over what is `known`; whether anything was added to what is `found`."""
     if not begun:
         return False
     best, first = max(entry.evidence for entry in begun), known.evidence
