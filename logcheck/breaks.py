@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows, in_words
-from logcheck.seams import behind_lost_times
+from logcheck.leaps.seams import behind_lost_times
 from logcheck.stretches import Stretches, part
 from records.errors import BadInput
 from records.log import RunLog

@@ -105,7 +105,7 @@ STALE_LEAP = Limit(
     "that a repeated reading is made up for by: 2 where the axis goes on evenly, 1 at most where it stood",
 )
 LEAST_STALE_SHARE = Limit(0.001, "share of rows", "an encoder off by a step now and then: 7 in 100 000 rows by chance")
-LEAST_STALE = Count(3, "readings", "in a log", "213 honest logs: four have one, none two")
+LEAST_STALE = Count(3, "readings", "fewer in a log are chance", "213 honest logs: four have one, none two")
 
 # inputs
 SATURATED_SHARE = Limit(0.02, "share of rows", "more rows at a limit are worth a note")

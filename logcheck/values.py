@@ -11,8 +11,8 @@ from logcheck.clipped import clipped_findings
 from logcheck.dead import dead_findings, read_again
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.held import held_findings, stale_findings
-from logcheck.motion import wrap_findings
-from logcheck.seams import seam_findings
+from logcheck.leaps.motion import wrap_findings
+from logcheck.leaps.seams import seam_findings
 from logcheck.standing import end_findings
 from logcheck.zeros import zero_findings
 from records.log import RunLog

@@ -7,7 +7,7 @@ import pytest
 
 from logcheck.between import duplicate_findings
 from logcheck.integrity import demand, examine
-from logcheck.motion import wrap_findings
+from logcheck.leaps.motion import wrap_findings
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant, bind

@@ -12,9 +12,9 @@ from logcheck.finding import EXCLUDE, NOTE, REFUSE, Found, in_words
 from logcheck.grid import grid_step, printed_digits
 from logcheck.held import held_findings
 from logcheck.inputs import input_findings
-from logcheck.motion import motion_findings
+from logcheck.leaps.motion import motion_findings
+from logcheck.leaps.seams import seam_findings
 from logcheck.plant import plant_findings
-from logcheck.seams import seam_findings
 from logcheck.stamps import timing, timing_findings
 from logcheck.standing import locked_findings
 from logcheck.units.angle import angle_unit

@@ -8,7 +8,7 @@ import pytest
 
 from logcheck.dead import dead_findings, read_again
 from logcheck.integrity import examine
-from logcheck.seams import seam_findings
+from logcheck.leaps.seams import seam_findings
 from recordings.datasets.files import datasets_folder
 from recordings.datasets.library import IMPORTERS, import_record, records
 from records.errors import BadInput

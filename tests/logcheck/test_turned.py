@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from logcheck.integrity import demand, examine
-from logcheck.turned import turned_findings
+from logcheck.leaps.turned import turned_findings
 from records.errors import BadInput
 from records.log import RunLog
 from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded

@@ -66,8 +66,8 @@ def test_samples_whose_time_goes_back_are_left_out_and_one_that_bears_the_stamp_
     np.testing.assert_allclose(done.log.t_s, np.delete(T_S, 30), atol=1e-9)
     np.testing.assert_array_equal(done.log.y[:, 0], np.delete(RUN["psi_rad"], 30))
     assert "psi_rad: 1 sample whose time does not rise left out, first at 0.2 s" in done.found
-    (told,) = [told for told in done.found if "bear the stamp" in told]
-    assert "1 row bear" in told
+    (told,) = [told for told in done.found if "the stamp of the row before" in told]
+    assert "1 row bears the stamp" in told
 
 
 LATE_S = np.arange(4000) * 0.0005

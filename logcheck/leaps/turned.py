@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.finding import REFUSE, Array, Finding, Found, Rows
-from logcheck.seams import new_references
+from logcheck.leaps.seams import new_references
 from records.log import RunLog
 from records.text.units import unit_of
 from sim.bind import BoundPlant
