@@ -26,7 +26,7 @@ from sim.bind import BoundPlant, bind
 from sim.tracking import left
 from tests.other_plants import plant_file
 from tests.own_plants import HEATER, PLAIN, TWO_ALIKE, OwnPlant
-from tests.soak import SOAK
+from tests.soak import SOAK, sampled
 from twinlaw.workflows.chain.flying import fly_double, fly_host
 from twinlaw.workflows.new_plant import plant_texts
 from verification.comparison.conditions import spread
@@ -107,7 +107,7 @@ def designed(name: str, of: str) -> Any:
     return CONTROLLERS[name].design(plant(of), read_settings(plant(of)))
 
 
-@pytest.mark.parametrize(("name", "of"), DESIGNED)
+@pytest.mark.parametrize(("name", "of"), sampled(DESIGNED, [(name, PLANTS[turn]) for turn, name in enumerate(NAMES)]))
 def test_it_flies_with_its_references_in_double_precision_and_as_generated(name: str, of: str) -> None:
     # Truth: what settles leaves no reference, and the generated law flies as the law in double precision does.
     table = designed(name, of)

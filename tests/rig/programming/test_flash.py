@@ -27,6 +27,7 @@ from rig.programming.flash import (
 from rig.programming.image import build_firmware
 from tests.docs.json_page import is_as_documented
 from tests.law_tables import ce150_table
+from tests.soak import sampled
 from twinlaw.command import main
 from twinlaw.verbs import flash as verb
 from twinlaw.workflows.chain.boards import board_url
@@ -187,7 +188,9 @@ FAILURES = [
 
 
 @needs_stm32flash
-@pytest.mark.parametrize(("faults", "words", "status"), FAILURES, ids=lambda value: str(value)[:60])
+@pytest.mark.parametrize(
+    ("faults", "words", "status"), sampled(FAILURES, FAILURES[::3]), ids=lambda value: str(value)[:60]
+)
 def test_a_loader_that_fails_gives_one_clear_line_and_its_exit_status(faults, words, status, image, capsys):
     with PtyBootLoader(faults) as chip:
         assert main(["flash", "--port", chip.path, "--out", str(image.parent)]) == status

@@ -131,6 +131,7 @@ def test_a_cluster_that_is_not_there_is_told_before_anything_is_built(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.soak
 def test_the_page_is_of_today_s_tables() -> None:
     """To write it anew, the page itself names the command."""
     page = (ROOT / "docs" / "controllers.md").read_text(encoding="utf-8")
