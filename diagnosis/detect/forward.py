@@ -39,4 +39,7 @@ def without(scores: Scores, taken: Array) -> Scores:
 
 def gain_of(score: Array, norm: Array, whole: Array) -> Array:
     """What columns gain by their scores and squared norms, 0 where of the `whole` norm nothing is left."""
-    return np.where(norm > LEFT * whole, 0.5 * score**2 / np.maximum(norm, 1e-300), 0.0)
+    shown = norm > np.maximum(LEFT * whole, 0.0)  # whose rounding may leave less than none
+    return np.asarray(
+        0.5 * np.divide(score, np.sqrt(np.where(shown, norm, 1.0)), out=np.zeros_like(score), where=shown) ** 2
+    )

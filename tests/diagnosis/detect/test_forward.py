@@ -34,3 +34,10 @@ def test_in_turn_each_gains_most_beside_those_before_and_nothing_is_taken_twice(
         return gain_of(left.score, np.diag(left.gram), whole)
 
     assert forward(told, gains, lambda k: np.eye(3)[:, [k]], 3) in ([0, 2], [1, 2])
+
+
+def test_a_column_of_which_nothing_shows_gains_nothing() -> None:
+    # Truth: 0 where all of it is rounding, whatever its score; else score^2 / norm / 2.
+    score, norm, whole = np.array([1e200, 3.0, 2.0]), np.array([0.0, 1e-12, 4.0]), np.array([-1e-20, 1.0, 4.0])
+    with np.errstate(all="raise"):
+        assert gain_of(score, norm, whole) == pytest.approx([0.0, 0.0, 0.5])
