@@ -8,7 +8,7 @@ from diagnosis import decisions
 from diagnosis.fit.coloured_noise import coloured_noise_of, colours, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
-from diagnosis.hypothesis.case import Case, beginning_of
+from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
 from jobs.thread_map import thread_map
 from records.errors import BadInput
@@ -25,10 +25,8 @@ def nominal_fit(case: Case) -> Fit:
 
 def best_plain_fit(case: Case) -> Fit:
     """The likeliest of plain fits that begin at several levels of noise: where axes stick, slopes lead to the next hill only, and the first
-    rows of the logs say which is the likelier."""
-    part = beginning_of(case)
-    best = max(thread_map(lambda first: plain_fit(part, first), NOISE_STARTS), key=lambda found: found.log_posterior)
-    return best if part is case else settled(case, best.hypothesis)
+    rows alone do not tell which is the highest."""
+    return max(thread_map(lambda first: plain_fit(case, first), NOISE_STARTS), key=lambda found: found.log_posterior)
 
 
 def plain_fit(case: Case, first: float = float(decisions.FIRST_PROCESS_NOISE)) -> Fit:
