@@ -97,9 +97,9 @@ COLOUR_COST = Limit(
 SMALLEST_STEP = Limit(
     0.004,
     "share of an input's range",
-    "finer steps are sought of no input: of so much of its range as its commands take",
+    "of what its commands take: finer ones are sought of none, a choice which no data set",
 )
-LARGEST_STEP = Limit(0.25, "share of an input's range", "coarser ones show in the readings of the input itself")
+LARGEST_STEP = Limit(0.25, "share of an input's range", "coarser ones are sought of none: a choice, which no data set")
 SHAPE_COST = Limit(
     2.0,
     "nats",

@@ -3,8 +3,6 @@
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
@@ -78,9 +76,9 @@ def _twins(
     gained beside the other."""
     before = {frozenset(entry.effects): entry for entry in fitted}
     least = max(entry.evidence for entry in found) - decisions.NEAR_BEST
-    for entry in found:
+    for entry in (entry for entry in found if entry.evidence > least):
         own = before[frozenset(entry.effects)]
-        gained = entry.evidence - own.evidence if entry.evidence > least else -np.inf
+        gained = entry.evidence - own.evidence
         yield from (other for other in hardly_told(case, own, fitted) if own.evidence - other.evidence <= gained)
 
 
@@ -97,22 +95,24 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
     The likeliest of them goes first: beside what it then has others may be out of reach, and what lacks the same as it shows the same in
     its innovations, so that its noise is tried beside them.
     """
+    if not asked:
+        return []
+    left = _foretold(case, first)
     begun = dict(zip(asked, thread_map(lambda entry: _under_noise_of(case, entry, first), asked), strict=True))
-    reach = dict(zip(asked, thread_map(lambda entry: _reach(case, begun[entry], first), asked), strict=True))
+    reach = dict(zip(asked, thread_map(lambda entry: _reach(case, begun[entry], left), asked), strict=True))
     least = max(entry.evidence for entry in (first, *begun.values())) - decisions.NEAR_BEST
     near = sorted((entry for entry in asked if reach[entry] >= least), key=lambda entry: -begun[entry].evidence)
-    lead = _own_noise(case, near[0], [first], least) if near else None
+    lead = _own_noise(case, near[0], [first], left, least) if near else None
     known = [first] if lead is None else [first, lead]
     least = max(least, *(entry.evidence - decisions.NEAR_BEST for entry in known))
     rest = [entry for entry in near[1:] if reach[entry] >= least]
-    own = [lead, *thread_map(lambda entry: _own_noise(case, entry, known, least), rest)]
+    own = [lead, *thread_map(lambda entry: _own_noise(case, entry, known, left, least), rest)]
     return [*(begun[entry] for entry in asked if entry not in (*near[:1], *rest)), *filter(None, own)]
 
 
-def _reach(case: Case, fitted: FittedHypothesis, first: FittedHypothesis) -> float:
-    """The evidence that noise with a memory could give a hypothesis at most, by what its innovations foretell beyond those of the first."""
-    further = max(_foretold(case, fitted) - _foretold(case, first), 0.0)
-    return fitted.evidence + decisions.PARAMETERS_BACK * further
+def _reach(case: Case, fitted: FittedHypothesis, left: float) -> float:
+    """The evidence that noise with a memory could give a hypothesis at most, by what its innovations foretell beyond `left` nats."""
+    return fitted.evidence + decisions.PARAMETERS_BACK * max(_foretold(case, fitted) - left, 0.0)
 
 
 def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> FittedHypothesis:
@@ -127,18 +127,18 @@ def _fit_under(case: Case, fitted: FittedHypothesis, known: FittedHypothesis, ro
 
 
 def _own_noise(
-    case: Case, fitted: FittedHypothesis, known: Sequence[FittedHypothesis], least: float
+    case: Case, fitted: FittedHypothesis, known: Sequence[FittedHypothesis], left: float, least: float
 ) -> FittedHypothesis | None:
-    """The hypothesis with the noise of one that is `known`; or with what it shows by itself, where its innovations promise more than those
-    of the first and as much as `least`, and that is likelier."""
+    """The hypothesis with the noise of one that is `known`; or with what it shows by itself, where its innovations promise more than the
+    `left` nats that those of the first foretell, and evidence of as much as `least`, and that is likelier."""
     found = list[FittedHypothesis]()
     for other in known:
         shared = _with_memory(case, fitted, other) if _has_memory(case, other) else fitted
         if shared is None:
             continue
         found.append(shared)
-        promises = _foretold(case, shared) - _foretold(case, known[0]) >= decisions.TAKEN_IN
-        if not promises or _reach(case, shared, known[0]) < least:
+        promises = _foretold(case, shared) - left >= decisions.TAKEN_IN
+        if not promises or _reach(case, shared, left) < least:
             return max(found, key=lambda entry: entry.evidence)
     own = _with_memory(case, fitted)
     return max((*found, *([] if own is None else [own])), key=lambda entry: entry.evidence, default=None)
