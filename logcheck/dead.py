@@ -136,9 +136,8 @@ def _dead(
         leaps_in = _is_leap(into, before[-thresholds.AROUND_STAND_ROWS :], least)
         leaps_out = _is_leap(out, after[: thresholds.AROUND_STAND_ROWS], least)
         arrives = _is_under_way(np.abs(arrived), least)
-        driven = _moves_far(
-            u[begin : end + (2 if has_mass else 1)], usual_u
-        )  # no mass answers a command in the row that gives it
+        until = end + (2 if has_mass else 1)  # no mass answers a command in the row that gives it
+        driven = _moves_far(u[begin:until], usual_u)
         goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
         set_going = is_set_going(u, begin, end, way, usual_u)
         starts = not has_mass and set_going and not arrives  # a rate leaves its rest by its largest move

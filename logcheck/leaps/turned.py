@@ -58,9 +58,8 @@ def _turns(t_s: Array, values: Array, u: Array, period_s: float, step: float) ->
     rows = np.flatnonzero(to_its_mirror[SIDE:-SIDE]) + SIDE + 1
     came, went = values[rows - 1] - values[rows - 1 - SIDE], values[rows + SIDE] - values[rows]
     is_moving = np.minimum(np.abs(came), np.abs(went)) > 0.5 * SIDE * near[rows - 1]
-    is_moving &= _is_even(values, rows - 1, -2) & _is_even(
-        values, rows, 2
-    )  # where it turns about, its direction tells nothing
+    # Where it turns about, its direction tells nothing.
+    is_moving &= _is_even(values, rows - 1, -2) & _is_even(values, rows, 2)
     is_mirrored = np.abs(came + went) < thresholds.MIRRORED * np.abs(came - went)
     return np.asarray(rows[np.where(is_moving, is_mirrored, _go_on(u)[rows - 1])])
 
