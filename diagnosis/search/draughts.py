@@ -92,8 +92,8 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
     """Those asked, fitted under the noise of the first; with their own those that it could bring near the likeliest, but for those in which
     it would be more than noise.
 
-    The likeliest of them goes first: beside what it then has others may be out of reach, and what lacks the same as it shows the same in
-    its innovations, so that its noise is tried beside them.
+    The likeliest of them that takes any goes first: beside what it then has others may be out of reach, and what lacks the same as it
+    shows the same in its innovations, so that its noise is tried beside them.
     """
     if not asked:
         return []
@@ -101,13 +101,25 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
     begun = dict(zip(asked, thread_map(lambda entry: _under_noise_of(case, entry, first), asked), strict=True))
     reach = dict(zip(asked, thread_map(lambda entry: _reach(case, begun[entry], left), asked), strict=True))
     least = max(entry.evidence for entry in (first, *begun.values())) - decisions.NEAR_BEST
-    near = sorted((entry for entry in asked if reach[entry] >= least), key=lambda entry: -begun[entry].evidence)
-    lead = _own_noise(case, near[0], [first], left, least) if near else None
-    known = [first] if lead is None else [first, lead]
+    near = [entry for entry in sorted(asked, key=lambda entry: -begun[entry].evidence) if reach[entry] >= least]
+    own = _until_noise(case, near, first, left, least)
+    known = [first, *(found for found in own.values() if found is not None and _has_memory(case, found))]
     least = max(least, *(entry.evidence - decisions.NEAR_BEST for entry in known))
-    rest = [entry for entry in near[1:] if reach[entry] >= least]
-    own = [lead, *thread_map(lambda entry: _own_noise(case, entry, known, left, least), rest)]
-    return [*(begun[entry] for entry in asked if entry not in (*near[:1], *rest)), *filter(None, own)]
+    rest = [entry for entry in near if entry not in own and reach[entry] >= least]
+    own |= zip(rest, thread_map(lambda entry: _own_noise(case, entry, known, left, least), rest), strict=True)
+    return [found for entry in asked if (found := own.get(entry, begun[entry])) is not None]
+
+
+def _until_noise(
+    case: Case, near: Sequence[FittedHypothesis], first: FittedHypothesis, left: float, least: float
+) -> dict[FittedHypothesis, FittedHypothesis | None]:
+    """What own noise makes of those near, in turn, down to the first that takes some with a memory."""
+    own = dict[FittedHypothesis, FittedHypothesis | None]()
+    for entry in near:
+        own[entry] = found = _own_noise(case, entry, [first], left, least)
+        if found is not None and _has_memory(case, found):
+            break
+    return own
 
 
 def _reach(case: Case, fitted: FittedHypothesis, left: float) -> float:
