@@ -35,7 +35,9 @@ NO_LOOP = 20.0  # of |1/(1 + L)|: no loop to begin from
 DERIVATIVE_SHARE = 10.0  # Td / Tf
 FREQUENCIES = 160
 BISECTIONS = 12
-_RATIOS = np.geomspace(1.0, 0.01, 12)[::-1]  # of k_i to its most with real zeros, where bisection starts
+_RATIOS = np.geomspace(
+    1.0, 0.01, 12
+).tolist()  # of k_i to its most with real zeros: bisection starts at the first that holds
 # Of a gain to its start, which crosses one at the wished speed: 1e6 times less, no loop is left; without an end a search that nothing holds
 # goes on to gains of 0.
 WIDEST = 1e6
@@ -177,14 +179,13 @@ def _largest_integral(loop: _Loop, k_p: float, k_d: float, bound: float) -> floa
     """The largest k_i within the bound, 0 where there is none."""
 
     def holds(k_i: float) -> bool:
-        return _sensitivity(loop, k_p, k_i, k_d) <= bound
+        return _peak(loop, k_p, k_i, k_d) <= bound and _radius(loop, k_p, k_i, k_d) < 1.0
 
     real_zeros = k_p * k_p / (4.0 * k_d)
-    held = [ratio * real_zeros for ratio in _RATIOS if holds(ratio * real_zeros)]
-    if not held or max(held) == real_zeros:
-        return float(max(held, default=0.0))
-    low = float(max(held))
-    high = low * float(_RATIOS[1] / _RATIOS[0])
+    low = next((ratio * real_zeros for ratio in _RATIOS if holds(ratio * real_zeros)), 0.0)
+    if low in (0.0, real_zeros):
+        return low
+    high = low * _RATIOS[0] / _RATIOS[1]
     for _ in range(BISECTIONS):
         middle = math.sqrt(low * high)
         low, high = (middle, high) if holds(middle) else (low, middle)
@@ -194,22 +195,27 @@ def _largest_integral(loop: _Loop, k_p: float, k_d: float, bound: float) -> floa
 def _sensitivity(loop: _Loop, k_p: float, k_i: float, k_d: float) -> float:
     """The largest |1/(1 + C G)| over frequencies and operating points; above NO_LOOP where a loop is unstable or faster than wished, the
     farther the higher, so that a search comes back from there."""
+    largest = _peak(loop, k_p, k_i, k_d)
+    if largest > NO_LOOP:
+        return largest
+    radius = _radius(loop, k_p, k_i, k_d)
+    return largest if radius < 1.0 else NO_LOOP * radius
+
+
+def _peak(loop: _Loop, k_p: float, k_i: float, k_d: float) -> float:
+    """The same of loops whose poles nobody looked at."""
     filter_s = _filter_s(loop, k_p, k_d)
     g = lag_gain(filter_s, loop.Ts_s)
     C = k_p + k_i * loop.Ts_s / (loop.z - 1.0) + k_d / filter_s * (1.0 - g * loop.z / (loop.z - 1.0 + g))
     L = loop.G * C
     too_fast = float(np.max(np.abs(L[:, loop.is_fast])))
-    if too_fast >= 1.0:
-        return NO_LOOP * too_fast
-    largest = float(np.max(np.abs(1.0 / (1.0 + L))))
-    if largest > NO_LOOP:
-        return largest
-    radius = _radius(loop, k_p, k_i, k_d / filter_s, g)
-    return largest if radius < 1.0 else NO_LOOP * radius
+    return NO_LOOP * too_fast if too_fast >= 1.0 else float(np.max(np.abs(1.0 / (1.0 + L))))
 
 
-def _radius(loop: _Loop, k_p: float, k_i: float, k_f: float, g: float) -> float:
+def _radius(loop: _Loop, k_p: float, k_i: float, k_d: float) -> float:
     """The largest |z| of the poles of all closed loops x, I, y_f."""
+    filter_s = _filter_s(loop, k_p, k_d)
+    g, k_f = lag_gain(filter_s, loop.Ts_s), k_d / filter_s
     order = len(loop.plants[0].N)
     closed = np.zeros((len(loop.plants), order + 2, order + 2))
     for matrix, plant in zip(closed, loop.plants, strict=True):
