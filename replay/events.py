@@ -68,6 +68,8 @@ class Workshop:
 
     def __init__(self, flight: ReplayedLog) -> None:
         self.flight = flight
+        measured = ~np.isnan(flight.logged_V).any(axis=1)
+        self.lacks = np.isnan(flight.angle_rad[measured]).any(axis=0)  # angles (loops,) that answered rows do without
         self._inputs: dict[object, NDArray[Any]] = {}
         self._answers: dict[object, tuple[Array, Array]] = {}
 
@@ -96,8 +98,7 @@ class Follower:
         self.inputs = workshop.inputs(setup)
         self._wanted, self._slack = workshop.answers(setup)
         self._loops = setup.loops
-        measured = ~np.isnan(self._flight.logged_V).any(axis=1)
-        self._lacks = np.isnan(self._flight.angle_rad[measured]).any(axis=0)
+        self._lacks = workshop.lacks
         self._late = np.array([setup.reference_lag] * self._loops + list(each(setup.angle_lags, self._loops))) > 0
 
     def follow(self) -> Trace:
