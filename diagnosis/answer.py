@@ -87,7 +87,7 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit
     chosen = seen.retuned if holdout is None else holdout.base
     predicted = () if holdout is None else holdout.predicted(chosen)
     told = () if holdout is None else holdout.notes
-    blind = cannot_tell(case, seen.score_tests)
+    blind = reason is Exit.TOO_UNSURE or cannot_tell(case, seen.score_tests)
     notes = (*material.notes, *told, *notes_of(case, seen.score_tests, chosen, None))
     diagnosis = Diagnosis(
         verdict="cannot tell" if blind else "no gap",

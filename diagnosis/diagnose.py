@@ -29,7 +29,7 @@ from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
 from diagnosis.seeing import alarmed, alone_of, beside_noise, detected_anew, seen_of
-from diagnosis.standing import confirmed_by, of_consequence
+from diagnosis.standing import confirmed_by, may_be_missing, of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
 from records.reasons import Note
@@ -51,9 +51,10 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if not alarmed(seen.detection.p):
         return _nothing(seen, noisy, material, Exit.UNEXPLAINED)
     seen, judged = _judged(seen, material, found, beyond)
-    seen, matters = of_consequence(seen, judged)
-    if not matters:
-        return _nothing(seen, noisy, replace(material, notes=judged.notes), Exit.TOO_SMALL, judged.holdout)
+    seen, left_by = of_consequence(seen, judged)
+    if left_by is not None:
+        perhaps = may_be_missing(judged) if left_by is Exit.TOO_UNSURE else ()
+        return _nothing(seen, noisy, replace(material, notes=(*perhaps, *judged.notes)), left_by, judged.holdout)
     return gap(seen, material, judged)
 
 

@@ -34,6 +34,7 @@ class Exit(Enum):
     YIELDING_EXPLAINS = "yielding_explains"  # axes that creep or give near rest, which is no gap, leave none
     UNEXPLAINED = "unexplained"  # a small gap that neither an effect of sure size nor parameters explain
     TOO_SMALL = "too_small"  # a gap whose explanations change no prediction by enough to matter
+    TOO_UNSURE = "too_unsure"  # one whose explanation may change predictions by enough, but not surely
     EFFECT_ADDED = "effect_added"
     PARAMETERS_ALONE = "parameters_alone"
     NAMED_NOT_ADDED = (

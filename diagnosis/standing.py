@@ -1,18 +1,32 @@
 """Whether a gap stands: a small one must be explained by evidence, and what explains any must predict better."""
 
 from dataclasses import replace
+from enum import IntEnum
 
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.decide.holdout import surely_better
+from diagnosis.decide.holdout import NATS
 from diagnosis.decide.weighing import named
 from diagnosis.decisions import decided, held_against
-from diagnosis.result import Judged, Seen
+from diagnosis.result import Exit, Judged, Seen
 from diagnosis.search.beam import Search
 from diagnosis.search.retune import Retune
 from diagnosis.seeing import false_alarm
 from diagnosis.validate.fitted_logs import readings_of
+from records.reasons import Decision, Note
+
+
+class Consequence(IntEnum):
+    """Whether something matters to predictions."""
+
+    NONE = 0
+    PERHAPS = 1
+    SURE = 2
+
+
+_OUTCOMES = ("too small to matter", "may matter, not surely", "matters")
+_EXITS = {Consequence.NONE: Exit.TOO_SMALL, Consequence.PERHAPS: Exit.TOO_UNSURE}
 
 
 def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
@@ -32,9 +46,10 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
     return replace(seen.because(size, false_alarm("what explains it", p)), detection=replace(detection, p=p))
 
 
-def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
-    """Whether what explains a gap predicts the logs better than the plain plant with its parameters moved: by what matters, and a small gap
-    by more than chance, as a gain of x nats has a chance of exp(-x) at most; or surely those that were not fitted.
+def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, Exit | None]:
+    """By which exit a gap leaves whose explanation predicts the logs no better than the plain plant with its parameters moved: by what
+    matters, and a small gap by more than chance, as a gain of x nats has a chance of exp(-x) at most; or surely those that were not
+    fitted. None where it stands. What may matter, but not surely, is not said to be nothing.
 
     A plant that had to move a parameter beyond its spread is none that is as stated, however well it then predicts.
     """
@@ -42,13 +57,31 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
     furthest = float(np.max(np.abs(seen.retuned.fit.hypothesis.theta), initial=0.0))
     beyond = seen.detection.moved and furthest > decisions.FREE_SPREAD
     if beyond or (ahead_nats is None and not small):
-        return seen, True
-    least = float(decisions.MATTERS) * readings_of(seen.case)
-    least = max(least, -float(np.log(decisions.ALARM))) if small else least
-    matters = ahead_nats is not None and ahead_nats >= least
-    outcome = "matters" if matters else "no gap: too small to matter"
-    rule = held_against("matters", named(judged.weighed), ahead_nats or 0.0, least, "nats", outcome)
-    surely, told = (
-        (matters, ()) if matters or judged.holdout is None else surely_better(judged.holdout, judged.weighed.fitted)
-    )
-    return seen.because(rule, *told), surely
+        return seen, None
+    worth = float(decisions.MATTERS) * readings_of(seen.case)
+    surely = max(worth, -float(np.log(decisions.ALARM))) if small else worth
+    told, rule = _consequence("matters", named(judged.weighed), ahead_nats or 0.0, worth, surely, "nats")
+    seen = seen.because(rule)
+    if told is not Consequence.SURE and judged.holdout is not None and judged.weighed.fitted:
+        score = judged.holdout.score(judged.weighed.fitted[0].fit.hypothesis)
+        worth, surely = float(decisions.MATTERS), decisions.SURELY * score.sd
+        there, rule = _consequence("matters_elsewhere", named(judged.weighed), score.gain, worth, surely, NATS)
+        told, seen = max(told, there), seen.because(rule)
+    return seen, _EXITS.get(told)
+
+
+def may_be_missing(judged: Judged) -> tuple[Note, ...]:
+    """What would explain a gap that does not surely matter."""
+    weighed = judged.weighed
+    if not weighed.fitted:
+        return ()
+    return (Note("may_be_missing", named(weighed), {"probability": weighed.probabilities[0]}),)
+
+
+def _consequence(
+    rule: str, of: str, gain: float, worth: float, surely: float, unit: str
+) -> tuple[Consequence, Decision]:
+    """What a gain of predictions comes to where less than `worth` is nothing, and less than `surely` may be chance; and the rule."""
+    least = max(worth, surely)
+    told = Consequence((gain >= worth) + (gain >= least))
+    return told, held_against(rule, of, gain, least, unit, _OUTCOMES[told])

@@ -159,17 +159,6 @@ def is_surely_better(told: Score) -> bool:
     return told.gain > decisions.SURELY * told.sd
 
 
-def surely_better(holdout: Holdout, hypotheses: Sequence[FittedHypothesis]) -> tuple[bool, tuple[Decision, ...]]:
-    """Whether the first of `hypotheses` surely predicts these logs better than `base`, by what matters, and the rule; no where nothing
-    was."""
-    if not hypotheses:
-        return False, ()
-    told, of = holdout.score(hypotheses[0].fit.hypothesis), " + ".join(hypotheses[0].effects)
-    least = max(decisions.SURELY * told.sd, float(decisions.MATTERS))
-    outcome = "matters there" if told.gain > least else "no gap: too small to matter"
-    return told.gain > least, (held_against("matters_elsewhere", of, told.gain, least, NATS, outcome),)
-
-
 def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note, ...], tuple[Decision, ...]]:
     """What the logs say of a hypothesis, what is to be told of that, and its records."""
     told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"

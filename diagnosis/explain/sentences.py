@@ -117,6 +117,10 @@ def _unsure(note: Note) -> str:
     )
 
 
+def _may_be_missing(note: Note) -> str:
+    return f"perhaps the plant file lacks {note.subject} ({note.numbers['probability']:.2f}); these logs do not show surely that it matters"
+
+
 def _another_plant(note: Note) -> str:
     return (
         f"these may be logs of another plant: beside every effect a parameter stays {note.numbers['deviations']:.0f} standard "
@@ -167,6 +171,7 @@ _SENTENCES: Mapping[str, Callable[[Note], str]] = {
     "coloured_readings": _coloured_readings,
     "moved_parameter": _moved_parameter,
     "moved_effect": _moved_effect,
+    "may_be_missing": _may_be_missing,
     "twins": _twins,
     "imitated": _imitated,
     "hidden": _hidden,

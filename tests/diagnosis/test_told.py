@@ -128,8 +128,10 @@ def test_a_small_gap_that_nothing_explains_does_not_stand_and_keeps_its_chance()
     small = replace(small, detection=replace(small.detection, p=4e-5, largest=30.0, moved=False))
     weighed = Weighed((), (), 0.66, 0.34, 10.0, ahead_nats=3.0)
     result = Judged(object(), None, weighed, small.retuned, None, ())  # type: ignore[arg-type]
-    after, stands = of_consequence(small, result)
-    assert not stands
+    after, left_by = of_consequence(small, result)
+    assert (
+        left_by is Exit.TOO_UNSURE
+    )  # 3 nats are more than what matters, 0.04 a second, and less than the 6.9 that chance makes seldom
     assert after.detection.p == 4e-5
     assert after.decisions[-1].rule == "matters"
     assert after.decisions[-1].value == 3.0

@@ -15,7 +15,7 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.result import Judged, Seen
+from diagnosis.result import Exit, Judged, Seen
 from diagnosis.standing import of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import arm_case, arm_log, settled
@@ -58,24 +58,33 @@ def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not
         assert weighed.ahead_nats is not None
         assert (weighed.ahead_nats > 0.3 * FittedLogs(case).readings) is matters
         result = replace(judged(found, None), weighed=weighed)
-        after, stands = of_consequence(seen(case, plain), result)
-        assert stands is matters
+        after, left_by = of_consequence(seen(case, plain), result)
+        assert left_by is (None if matters else Exit.TOO_SMALL)
         assert (after.decisions[-1].rule, after.decisions[-1].of) == ("matters", effect)
 
 
 @pytest.mark.parametrize(
-    ("largest", "ahead_nats", "stands"),
-    [(20.0, 5.0, False), (20.0, 10.0, True), (20.0, None, False), (200.0, 5.0, True), (200.0, None, True)],
+    ("largest", "ahead_nats", "left_by"),
+    [
+        (20.0, 0.1, Exit.TOO_SMALL),
+        (20.0, 5.0, Exit.TOO_UNSURE),
+        (20.0, 10.0, None),
+        (20.0, None, Exit.TOO_SMALL),
+        (200.0, 0.1, Exit.TOO_SMALL),
+        (200.0, 5.0, None),
+        (200.0, None, None),
+    ],
 )
 def test_a_small_gap_needs_predictions_that_are_better_than_chance(
-    largest: float, ahead_nats: float | None, stands: bool
+    largest: float, ahead_nats: float | None, left_by: Exit | None
 ) -> None:
-    # Truth by hand: 5 nats have a chance of exp(-5) = 7e-3 without a gap, 10 nats one of 5e-5; a gap may stand at 1e-3. A large gap needs
-    # what matters, 0.04 nats a second of some ten seconds; where nothing explains one it stands, as that of an unknown effect.
+    # Truth by hand: 5 nats have a chance of exp(-5) = 7e-3 without a gap, 10 nats one of 5e-5; a gap may stand at 1e-3. What matters are
+    # 0.04 nats a second of some ten seconds: less is nothing, more that chance may make is unsure. A large gap that nothing explains
+    # stands, as that of an unknown effect.
     case = arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=76))
     plain = as_fitted(case, nominal_fit(case))
     found = None if ahead_nats is None else plain
-    assert of_consequence(seen(case, plain, largest), judged(found, ahead_nats))[1] is stands
+    assert of_consequence(seen(case, plain, largest), judged(found, ahead_nats))[1] is left_by
 
 
 def test_what_is_there_predicts_the_logs_better_and_what_is_idle_does_not() -> None:
@@ -116,4 +125,4 @@ def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_fil
     result = replace(judged(late, None), weighed=weighed_of(case, plain, late))
     theta = np.full_like(plain.fit.hypothesis.theta, furthest_sd)
     bent = replace(plain, fit=replace(plain.fit, hypothesis=replace(plain.fit.hypothesis, theta=theta)))
-    assert of_consequence(seen(case, bent, moved=moved), result)[1] is stands
+    assert (of_consequence(seen(case, bent, moved=moved), result)[1] is None) is stands

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, surely_better, with_held_out
-from diagnosis.decide.weighing import Explanations, weigh
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
+from diagnosis.decide.weighing import Explanations, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
 from diagnosis.detect.linearisation import Scores
@@ -18,8 +18,8 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import nominal_fit, plain_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.result import Judged, Result, Seen
-from diagnosis.standing import of_consequence
+from diagnosis.result import Exit, Judged, Result, Seen
+from diagnosis.standing import may_be_missing, of_consequence
 from diagnosis.validate.fitted_logs import readings_of
 from diagnosis.validate.score import HORIZONS_S, Errors, Score
 from records.log import RunLog
@@ -111,7 +111,6 @@ def test_what_the_hold_out_has_is_surely_better_and_what_it_has_not_surely_worse
     assert favour(told) > 0.5
     assert notes == ()
     assert added(with_rub, rubbing(), 0.1)[0].effects == tuple(RUB)
-    assert surely_better(with_rub, [rubbing()])[0]
 
     _, without = judged(arm_log(seed=34))
     (told, _, _), (chosen, notes, rules) = asked(without, rubbing()), added(without, rubbing(), 0.9)
@@ -119,8 +118,6 @@ def test_what_the_hold_out_has_is_surely_better_and_what_it_has_not_surely_worse
     assert favour(told) < -0.5
     assert (chosen is without.base, [note.kind for note in notes]) == (True, ["predicts_worse"])
     assert rules[0].outcome == "nothing added"
-    assert not surely_better(without, [rubbing()])[0]
-    assert surely_better(without, []) == (False, ())
 
 
 def test_a_hold_out_of_another_rig_makes_no_gap_none() -> None:
@@ -137,9 +134,30 @@ def test_a_hold_out_of_another_rig_makes_no_gap_none() -> None:
     weighed = weigh(Explanations((named,), plain, case.library, 20.0), {named: 10.0}, favour(told))
     assert weighed.probabilities[0] < 0.5
     result = Judged(object(), None, weighed, other.base, other, notes)  # type: ignore[arg-type]
-    after, stands = of_consequence(seen, result)
-    assert stands
+    after, left_by = of_consequence(seen, result)
+    assert left_by is None
     assert after.detection.p == 1e-4
+
+
+@pytest.mark.parametrize(
+    ("rubs_Nm", "left_by"),
+    [(0.0, Exit.TOO_SMALL), (0.5e-4, Exit.TOO_UNSURE), (1e-4, None)],
+    ids=["no", "half", "whole"],
+)
+def test_what_logs_that_were_not_fitted_may_be_predicted_better_by_is_not_said_to_be_nothing(
+    rubs_Nm: float, left_by: Exit | None
+) -> None:
+    # Truth: a rub of 0.1 mN m is supposed, of which the fitted logs say nothing. Six seconds of a rig that has it say so, those of one that
+    # has none contradict it; of one that has half of it they may be predicted a little better, or not.
+    _, holdout = judged(arm_log({"arm.coulomb": {"b": rubs_Nm}} if rubs_Nm else None, seed=33, seconds=6.0))
+    case, found = arm_case(arm_log(seed=31)), supposing({"arm.coulomb": {"b": 1e-4}})
+    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+    detection = Detection(1e-4, Tail(5.0, 1.0), 30.0, False, FormScores((), empty, np.zeros(0)))
+    seen = Seen(case, None, holdout.base, object(), (), None, detection)  # type: ignore[arg-type]
+    weighed = Weighed((found,), (0.6,), 0.4, 0.0, 10.0, ahead_nats=0.0)
+    result = Judged(object(), None, weighed, found, holdout, ())  # type: ignore[arg-type]
+    assert of_consequence(seen, result)[1] is left_by
+    assert [note.subject for note in may_be_missing(result)] == ["arm.coulomb"]
 
 
 def test_what_is_unlikely_is_added_only_where_the_hold_out_is_better_for_it() -> None:
@@ -148,7 +166,6 @@ def test_what_is_unlikely_is_added_only_where_the_hold_out_is_better_for_it() ->
     hardly = supposing({"arm.coulomb": {"b": 1e-9}})
     assert abs(holdout.score(hardly.fit.hypothesis).gain) < decisions.MATTERS
     assert added(holdout, hardly, 0.51)[0].effects == ("arm.coulomb",)
-    assert not surely_better(holdout, [hardly])[0]
     chosen, notes, rules = added(holdout, hardly, 0.49)
     assert (chosen is holdout.base, [note.kind for note in notes], rules[0].outcome) == (
         True,

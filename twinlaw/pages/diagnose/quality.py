@@ -22,7 +22,8 @@ def _verdict(diagnosis: Diagnosis) -> Look | None:
     if diagnosis.verdict == "no gap":
         return flag("no gap", Colour.GREEN)
     if diagnosis.verdict == "cannot tell":
-        return flag("too little motion to tell a gap")
+        unsure = diagnosis.verdict_reason == "too_unsure"
+        return flag("a gap that these logs do not show surely" if unsure else "too little motion to tell a gap")
     if diagnosis.found:
         return flag(f"the plant file lacks {' and '.join(map(words, diagnosis.found))}")
     if parameters_alone(diagnosis) > max(

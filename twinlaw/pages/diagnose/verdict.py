@@ -13,6 +13,7 @@ LIKELY = 0.8  # below which a name is no more than the likeliest of several
 LEAST_TOLD = 0.01  # share of the error below which its going is not told
 WORTH_A_THOUGHT = 0.05  # from which the next best is told
 MOVED = "moved_parameter"  # kind of note
+_NOT_TOLD = {"no gap": "No gap is told", "cannot tell": "Whether the plant file lacks anything cannot be told"}
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
@@ -24,8 +25,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _plant_sentence(diagnosis: Diagnosis) -> str:
-    if diagnosis.verdict == "no gap" and diagnosis.verdict_reason in SMALL:
-        return f"No gap is told. {reason_in_words(diagnosis)}"
+    if diagnosis.verdict != "gap" and diagnosis.verdict_reason in SMALL:
+        return f"{_NOT_TOLD[diagnosis.verdict]}. {reason_in_words(diagnosis)}"
     if diagnosis.verdict == "no gap":
         tuned = " once its parameters are re-tuned within what it states of them" if lowered(diagnosis) else ""
         return f"The plant file explains these logs{tuned}: nothing is missing that they could show."

@@ -7,7 +7,11 @@ from records.reasons import Decision
 from twinlaw.cli import console
 from twinlaw.pages.page import Section, Table
 
-SMALL = ("unexplained", "too_small")  # exits of a gap that is small and has no explanation that holds
+SMALL = (
+    "unexplained",
+    "too_small",
+    "too_unsure",
+)  # exits of a gap that has no explanation that holds, or none that surely does
 HEADING = ("rule", "of", "value", "limit", "unit", "what followed")
 # By the word of an exit (diagnosis/result.py): what it means for who reads the answer.
 _REASONS = {
@@ -16,6 +20,7 @@ _REASONS = {
     "yielding_explains": "Axes that creep or give near rest, as dry friction does, explain what looked like a gap.",
     "unexplained": "What remains is small, and neither an effect of sure size nor other parameters explain it.",
     "too_small": "What would explain the rest brings predictions over a second hardly closer, so none of it is told.",
+    "too_unsure": "What would explain the rest may bring predictions over a second closer, but not surely: more logs would tell.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",
     "parameters_alone": "Other values of the plant's own parameters are the likeliest explanation.",
     "named_not_added": "The likeliest effect does not predict the hold-out logs better, so the model stays without it.",

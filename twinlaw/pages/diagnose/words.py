@@ -174,8 +174,4 @@ def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
     seldom = (
         f"a rig that is as the plant file states, with its sensors, shows so large a gap with probability {chance(p)}"
     )
-    return (
-        seldom
-        if diagnosis.verdict != "no gap"
-        else f"something is there, too small or too unsure to count, although {seldom}"
-    )
+    return seldom if diagnosis.verdict != "no gap" else f"something is there, too small to count, although {seldom}"

@@ -67,4 +67,4 @@ def test_no_gap_whose_predictions_miss_the_logs_held_out_is_not_called_as_small_
 
 def test_no_gap_that_chance_does_not_give_says_why_it_is_none() -> None:
     small = replace(GAP, verdict="no gap", false_alarm_probability=1e-9, found=(), effects=())
-    assert "no gap: something is there, too small or too unsure to count, although a rig" in summary_text(small)
+    assert "no gap: something is there, too small to count, although a rig" in summary_text(small)
