@@ -44,7 +44,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         verdict="gap",
         false_alarm_probability=seen.detection.p,
         places=place_shares(
-            found, weighed, blamed[0].place if blamed else None, judged.beyond.places if judged.beyond else ()
+            found, weighed, blamed[0].place if blamed else None, judged.beyond.places if judged.beyond else {}
         ),
         when=time_map(case, energy),
         regions=region_map(case, energy),

@@ -205,11 +205,19 @@ def _ranked(
     explanations, idle = without_idle(explanations, shares_of(explanations, ahead, logs, holdout))
     weighed = replace(weigh(explanations, ahead), ahead_nats=matters_nats)
     seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))
-    if holdout is None or not weighed.fitted:
+    first = _likeliest(weighed, beyond)
+    if holdout is None or first is None:
         return _Ranked(seen.because(*weighed.decisions), weighed, holdout)
-    told, notes, rules = asked(holdout, weighed.fitted[0])
+    told, notes, rules = asked(holdout, first)
     weighed = replace(weigh(explanations, ahead, favour(told)), ahead_nats=matters_nats)
     return _Ranked(seen.because(*rules, *weighed.decisions), weighed, holdout, notes)
+
+
+def _likeliest(weighed: Weighed, beyond: Retune | None) -> FittedHypothesis | None:
+    """What logs that were not fitted are asked of: the likeliest of what explains, be it the plant's own parameters."""
+    if beyond is not None and weighed.retune > max(weighed.probabilities, default=0.0):
+        return beyond.fitted
+    return weighed.fitted[0] if weighed.fitted else None
 
 
 def _explanations(seen: Seen, found: Search, beyond: Retune | None) -> Explanations:

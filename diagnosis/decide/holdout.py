@@ -91,6 +91,10 @@ class Holdout:
         """The same of the plant that a hypothesis leaves for these logs, whatever it names: its parameters count too."""
         return score(self.errors_foreseen(hypothesis), self._errors(self.base.fit.hypothesis))
 
+    def score_over_stated(self, hypothesis: Hypothesis) -> Score:
+        """By how much a hypothesis predicts these logs better than the plant as stated: `base` has moved its parameters too."""
+        return score(self.errors_foreseen(hypothesis), self._errors(self.stated))
+
     def score_of_longest(self, hypothesis: Hypothesis) -> Score:
         """The same of predictions over the longest horizon alone."""
         return score(self.errors_foreseen(hypothesis).of_longest(), self._errors(self.base.fit.hypothesis).of_longest())
@@ -160,8 +164,10 @@ def is_surely_better(told: Score) -> bool:
 
 
 def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note, ...], tuple[Decision, ...]]:
-    """What the logs say of a hypothesis, what is to be told of that, and its records."""
-    told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
+    """What the logs say of a hypothesis, of the plant's parameters alone beside those that are stated; what is to be told of that, and its
+    records."""
+    of = " + ".join(first.effects) or "parameters"
+    told = (holdout.score if first.effects else holdout.score_over_stated)(first.fit.hypothesis)
     sure, left = is_surely_better(told), max(told.misfit, 0.0)
     missing = sure and left > told.gain
     outcome, further = "surely better" if sure else "not surely better", "something else is missing"

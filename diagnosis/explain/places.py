@@ -1,7 +1,8 @@
 """Where the gap lies: every hypothesis' probability goes to the places of its effects, by what each of them adds."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from types import MappingProxyType
 
 from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
@@ -11,9 +12,9 @@ from records.diagnosis import PlaceShare
 
 
 def place_shares(
-    search: Search, weighed: Weighed, unknown_place: str | None, retuned_places: Sequence[str] = ()
+    search: Search, weighed: Weighed, unknown_place: str | None, retuned: Mapping[str, float] = MappingProxyType({})
 ) -> tuple[PlaceShare, ...]:
-    """Shares by place, largest first, with a sum of 1."""
+    """Shares by place, largest first, with a sum of 1; `retuned` are those of parameters beyond their spread."""
     found: defaultdict[str, float] = defaultdict(float)
     for fitted, probability in zip(weighed.fitted, weighed.probabilities, strict=True):
         for place, share in _parts(search, fitted).items():
@@ -22,8 +23,8 @@ def place_shares(
         found[place] += weighed.partly * share
     if unknown_place is not None:
         found[unknown_place] += weighed.unknown
-    for place in retuned_places:
-        found[place] += weighed.retune / len(retuned_places)
+    for place, share in retuned.items():
+        found[place] += weighed.retune * share
     total = sum(found.values())
     kept = (
         {place: share / total for place, share in found.items() if share > decisions.LEAST_PLACE_SHARE * total}

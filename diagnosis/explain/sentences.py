@@ -130,8 +130,9 @@ def _another_plant(note: Note) -> str:
 
 def _something_else_missing(note: Note) -> str:
     better, left = float(np.exp(note.numbers["gain_nats"])), float(np.exp(note.numbers["left_nats"]))
+    makes = "other parameters make" if note.subject == "parameters" else f"{note.subject} makes"
     return (
-        f"{note.subject} makes predictions of the hold-out {better:.2g} times as good, yet they stay {left:.2g} times as far off as "
+        f"{makes} predictions of the hold-out {better:.2g} times as good, yet they stay {left:.2g} times as far off as "
         "the sensors and the noise would leave them: something else is missing"
     )
 

@@ -1,6 +1,7 @@
 """A gap that other parameter values explain, beyond their stated spread: then parameters are named, and no effect."""
 
-from collections.abc import Collection
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import Fit, away, fit
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
@@ -19,11 +20,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Retune:
-    """The fit where the spreads of what had moved are taken RETUNE_WIDER times as wide, its parameters that left them, and its evidence."""
+    """The fit where the spreads of what had moved are taken RETUNE_WIDER times as wide, its parameters that left them, the shares of their
+    places, by how unlikely each is where it now is, and its evidence."""
 
     fitted: FittedHypothesis
     parameters: tuple[str, ...]
-    places: tuple[str, ...]
+    places: Mapping[str, float]
     score: float
 
 
@@ -53,12 +55,25 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
         return None
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     parameters = tuple(names[int(case.free[index])] for index in far)
-    places = [place for name in parameters for place in places_of(case, name)]
-    places += [entry.effect.split(".")[0] for entry in numbers]
     told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in numbers))
     explained = evidence(found, case.library.effects)
     score = explained - decisions.RETUNE_NATS * len(told)
-    return Retune(FittedHypothesis((), stated, explained), told, tuple(dict.fromkeys(places)), float(score))
+    where = [*(places_of(case, name) for name in parameters), *([entry.effect.split(".")[0]] for entry in numbers)]
+    distances = np.append(
+        stated.hypothesis.theta[far], away(stated.hypothesis, numbers)[len(stated.hypothesis.theta) :]
+    )
+    places = _shares(where, distances)
+    return Retune(FittedHypothesis((), stated, explained), told, places, float(score))
+
+
+def _shares(where: Sequence[Sequence[str]], distances: Array) -> dict[str, float]:
+    """Of the places of each number, by the nats that its distance in standard deviations costs."""
+    costs = distances**2 / np.sum(distances**2)
+    found: defaultdict[str, float] = defaultdict(float)
+    for places, cost in zip(where, costs.tolist(), strict=True):
+        for place in places:
+            found[place] += cost / len(places)
+    return dict(found)
 
 
 def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:

@@ -120,6 +120,20 @@ def test_what_the_hold_out_has_is_surely_better_and_what_it_has_not_surely_worse
     assert rules[0].outcome == "nothing added"
 
 
+def test_parameters_alone_are_held_against_those_that_are_stated() -> None:
+    # Truth: the arm is a fifth longer than its file says, and both runs are of that rig: of the re-tuned plant, which lacks nothing, the
+    # hold-out says all there is to say for it, though it predicts no better than itself.
+    longer = 1.2 * np.asarray(arm().plant.parameters["l"].value).item()
+    case, checked = (arm_case(arm_log(seed=seed, l=longer)) for seed in (31, 33))
+    moved = FittedHypothesis((), nominal_fit(case), 0.0)
+    holdout = Holdout(checked, ["hold"], [None], moved)
+    told, notes, rules = asked(holdout, moved)
+    assert holdout.score(moved.fit.hypothesis).gain == 0.0
+    assert told.gain > decisions.SURELY * told.sd
+    assert favour(told) > 0.5
+    assert (notes, rules[0].of) == ((), "parameters")
+
+
 def test_a_hold_out_of_another_rig_makes_no_gap_none() -> None:
     # Truth: the rig that was fitted rubs, that of the hold-out does not. It may weaken the one name that there is; whether there is a gap
     # the fitted logs say, however small it be, by predictions that are ten nats better.
