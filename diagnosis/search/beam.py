@@ -10,7 +10,7 @@ from diagnosis.decisions import decided
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.detect.unlike import unlike
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
@@ -197,7 +197,7 @@ def beam_of(
     likeliest = max(ranked, key=lambda entry: entry.fit.log_likelihood, default=None)
     if likeliest is None:
         return []
-    near = _near(ranked[0], nominal)
+    near = least_near(ranked[0], nominal)
     kept: list[FittedHypothesis] = []
     for entry in ranked:
         if len(kept) == count or (len(entry.effects) > 1 and entry.evidence <= near):
@@ -220,18 +220,13 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     """Once more the best of all with the twins of the first, until effects and all noise agree: a fit not yet at its end would lose to one
     with an idle effect. What is far from the best is left as it is."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
-    best = [entry for entry in best if entry.evidence > _near(best[0], nominal)]
+    best = [entry for entry in best if entry.evidence > least_near(best[0], nominal)]
     twins = [entry for entry in best if is_twin(case, entry, best[0])]
     asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.SETTLED_FITS], *twins])]
     for step in (refined, once_more, with_own_events):
         ends = thread_map(lambda names, step=step: step(case, found[names]), asked)
         keep_better(found, [end for end in ends if end is not None])
-    keep_better(found, with_noise_beside(case, [entry for entry in found.values() if _certain(entry, found)]))
-
-
-def _near(best: FittedHypothesis, nominal: FittedHypothesis) -> float:
-    """The evidence above which a hypothesis may yet become the best: of 115 ends that were settled none came from further."""
-    return best.evidence - max(decisions.NEAR_BEST, decisions.CLOSE_PAIR_SHARE * (best.evidence - nominal.evidence))
+    keep_better(found, with_noise_beside(case, [entry for entry in found.values() if _certain(entry, found)], nominal))
 
 
 def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
 from diagnosis.fit.foretold import foretold_of
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
@@ -44,7 +44,9 @@ def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tupl
     return Draught(FittedHypothesis((name,), retuned.fit, retuned.evidence), quiet), (rule,)
 
 
-def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
+def with_noise_beside(
+    case: Case, fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis
+) -> list[FittedHypothesis]:
     """Hypotheses with the noise with a memory that the logs tell of beside their names, each with its own, where that is likelier; none
     where beside the best of them, and all that come near it, it takes what is no noise.
 
@@ -61,7 +63,7 @@ def with_noise_beside(case: Case, fitted: Sequence[FittedHypothesis]) -> list[Fi
         return []
     sizes = {len(entry.effects) for entry in fitted}
     others = [[entry for entry in ranked if len(entry.effects) == size and entry is not best] for size in sizes]
-    asked = [entry for group in others for entry in _in_reach(case, first, group)]
+    asked = [entry for group in others for entry in _in_reach(case, first, group, least_near(first, nominal))]
     found = [first, *_all_noisy(case, asked, first)]
     known = {frozenset(entry.effects) for entry in found}
     beside = [*_twins(case, ranked, found), *_fewer(ranked, max(found, key=lambda entry: entry.evidence))]
@@ -123,8 +125,10 @@ def _until_noise(
 
 
 def _reach(case: Case, fitted: FittedHypothesis, left: float) -> float:
-    """The evidence that noise with a memory could give a hypothesis at most, by what its innovations foretell beyond `left` nats."""
-    return fitted.evidence + decisions.PARAMETERS_BACK * max(_foretold(case, fitted) - left, 0.0)
+    """The evidence that noise with a memory could give a hypothesis, by what its innovations foretell beyond `left` nats: more than that
+    where it has none yet, for want of which its parameters bent."""
+    back = 1.0 if _has_memory(case, fitted) else float(decisions.PARAMETERS_BACK)
+    return fitted.evidence + back * max(_foretold(case, fitted) - left, 0.0)
 
 
 def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> FittedHypothesis:
@@ -170,18 +174,20 @@ def _has_memory(case: Case, fitted: FittedHypothesis) -> bool:
     return bool(gust_shares(case, hypothesis) or hypothesis.reading_noise)
 
 
-def _in_reach(case: Case, noisy: FittedHypothesis, others: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
-    """Those of the others, best first, that noise with a memory could bring near the likeliest with its own, `noisy`: under its noise, or
-    under another that their innovations foretell. The best of them with what is hardly told from it, and those that could come furthest."""
+def _in_reach(
+    case: Case, noisy: FittedHypothesis, others: Sequence[FittedHypothesis], least: float
+) -> list[FittedHypothesis]:
+    """Those of the others, best first, that noise with a memory could bring to the `least` evidence: to first order under that of the
+    likeliest, `noisy`, or where that has none by what their innovations foretell. The best of them, and those that promise most."""
     left = _foretold(case, noisy)
 
     def promised(entry: FittedHypothesis) -> float:
-        return entry.evidence + max(
-            _further(case, entry, noisy), decisions.PARAMETERS_BACK * (_foretold(case, entry) - left), 0.0
-        )
+        if _has_memory(case, noisy):
+            return entry.evidence + max(_further(case, entry, noisy), 0.0)
+        return _reach(case, entry, left)
 
     reach = dict(zip(others, thread_map(promised, others), strict=True))
-    near = [entry for entry in others if reach[entry] >= noisy.evidence - decisions.NEAR_BEST]
+    near = [entry for entry in others if reach[entry] >= least]
     furthest = sorted(near, key=lambda entry: -reach[entry])[: decisions.SETTLED_FITS]
     return list(dict.fromkeys([*near[:1], *furthest]))
 
