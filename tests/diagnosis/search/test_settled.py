@@ -39,6 +39,6 @@ def test_ends_that_are_far_from_the_best_are_not_settled(
         monkeypatch.setattr(beam, step, once_more)
     monkeypatch.setattr(beam, "_certain", lambda entry, found: True)
     monkeypatch.setattr(beam, "is_twin", lambda case, entry, best: True)
-    monkeypatch.setattr(beam, "with_noise_beside", lambda case, entries: [])
+    monkeypatch.setattr(beam, "with_noise_beside", lambda case, entries, nominal: [])
     beam._settle(arm_case(arm_log(seed=47)), found, nominal)
     assert asked == settled
