@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from controllers.equations.designing import Points
 from controllers.equations.judging import demand_robust, demand_stable
-from design.analysis.coupled import POINTS
+from design.analysis.coupled import COUPLED_POINTS
 from design.analysis.margins import LOWEST_RAD_S
 from design.discretise import SampledPlant
 from design.loop import Poles, to_rad_s
@@ -40,7 +40,7 @@ def demand_held_together(
 
 def coupled_sensitivity(plant: SampledPlant, controllers: Sequence[LinearController]) -> Array:
     """The largest |1/(1 + L)| of each loop (loops,), opened at its input with all others closed; controller i takes output i to input i."""
-    omega_rad_s = np.geomspace(LOWEST_RAD_S, math.pi / plant.sample_period_s, POINTS)
+    omega_rad_s = np.geomspace(LOWEST_RAD_S, math.pi / plant.sample_period_s, COUPLED_POINTS)
     gamma = np.expm1(1j * omega_rad_s * plant.sample_period_s)
     G = _response(gamma, plant.N, plant.B, plant.C)
     K = np.stack([_response(gamma, c.N, c.B[:, np.newaxis], c.C[np.newaxis])[:, 0, 0] + c.D for c in controllers], -1)

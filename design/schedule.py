@@ -24,7 +24,7 @@ NOISE = 1e-11
 # 0.1 s at 33 deg/s and the flight of `make run` leaves its references by 25 deg, at 2 ms it is 0.1 deg further off on the average, at
 # 5 ms nothing is seen.
 CONSTANT_Q3_BELOW_S = 2.5e-3
-DIGITS = 8  # float32 holds 7
+COEFFICIENT_DIGITS = 8  # float32 holds 7
 # A constant p_i has few digits (records.table.SHORT_BITS) where these move its distance from 1 by this share at most, else all. P is
 # delta^n where p_1, p_2 .. are 1, and that distance, which falls with the sample period to the power n, places the slow poles: rounding
 # 1 - p_1 of the CE150 costs 0.04 % at 10 ms, 28 % at 1 ms, and at 0.5 ms it is all gone and the loop unstable.
@@ -75,13 +75,13 @@ def fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
 
 
 def stored_fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
-    """The same fit of values (points,) as a table holds it, to DIGITS digits of the largest coefficient.
+    """The same fit of values (points,) as a table holds it, to COEFFICIENT_DIGITS digits of the largest coefficient.
 
     Beyond, processors round differently, and one design shall have one digest on all of them.
     """
     coefficients = fit(psi_rad, values, degree)
     largest = max(map(abs, coefficients))
-    places = DIGITS - 1 - math.floor(math.log10(largest)) if largest > 0.0 else 0
+    places = COEFFICIENT_DIGITS - 1 - math.floor(math.log10(largest)) if largest > 0.0 else 0
     return tuple(round(c, places) + 0.0 for c in coefficients)
 
 

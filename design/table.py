@@ -12,7 +12,7 @@ from design.analysis.rounding import FLOAT32, Rounding
 from design.gate import check
 from design.operating_points import DesignPoints, design_points, rest_V
 from design.report import DesignReport, flown_poles, make_report
-from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
+from design.schedule import COEFFICIENT_DIGITS, NOISE, fit_error, fit_schedule, stored_fit
 from design.settings import AxisSettings, DesignSettings
 from records.errors import BadInput
 from records.loops import Loop
@@ -181,7 +181,7 @@ def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> d
 
 
 def plain(values: Iterable[float]) -> list[float]:
-    """The numbers to DIGITS digits each, 0 for what is rounding beside the largest: the same on every processor, as the table's own are."""
+    """The numbers as the table's own are written, the same on every processor; 0 for what is rounding beside the largest."""
     found = [float(value) for value in values]
     least = NOISE * max(map(abs, found), default=0.0)
-    return [float(f"{value:.{DIGITS}g}") if abs(value) > least else 0.0 for value in found]
+    return [float(f"{value:.{COEFFICIENT_DIGITS}g}") if abs(value) > least else 0.0 for value in found]

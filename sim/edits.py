@@ -11,7 +11,7 @@ from sim.model import TIME, Axis, Model
 from sim.places import AxisPlace, Edit
 
 Expression = Any
-NOTHING = 1e-30  # beside the square of the sharpest corner
+NEGLIGIBLE = 1e-30  # beside the square of the sharpest corner
 # Of what gives near rest, in rad or in units of the way that is usual in a second: what gives way further has a name.
 MOST_GIVEN = 0.01
 SHARP = 1e-9  # V: the least width of a corner of what arrives of an input
@@ -106,11 +106,11 @@ def positive(expression: Expression) -> Expression:
 def knee(expression: Expression, width: Expression) -> Expression:
     """`positive` with its corner rounded by a parabola over +-width: (x + width)^2 / (4 width) there; the width must not be 0.
 
-    Its reciprocal is width / (width^2 + NOTHING), known to be real whatever its symbols are: SymPy else searches whole equations for
+    Its reciprocal is width / (width^2 + NEGLIGIBLE), known to be real whatever its symbols are: SymPy else searches whole equations for
     imaginary parts, minutes long once several effects act on one input.
     """
     beyond = positive(expression - width)
-    return beyond + (positive(expression + width) - beyond) ** 2 * width / (4 * (width**2 + NOTHING))
+    return beyond + (positive(expression + width) - beyond) ** 2 * width / (4 * (width**2 + NEGLIGIBLE))
 
 
 def strain_rate(velocity: Expression, z: sympy.Symbol, z_0: Expression) -> Expression:

@@ -17,7 +17,9 @@ LARGEST_STEP = 2.5
 # a sample is followed this closely, and what is told of it is right to 0.1 sd of such a log.
 ACCURATE_STEP = 0.25
 SETTLED_WITHIN = 40.0  # a sample of so many time constants; LARGEST_STEP leaves a thousandth of what began it: nothing is told of that
-MOST = 1000  # of 10 ms: a time constant of 4 us; an amplifier's own is shorter, and no part of a plant that moves
+MOST_SUBSTEPS = (
+    1000  # of 10 ms: a time constant of 4 us; an amplifier's own is shorter, and no part of a plant that moves
+)
 
 
 def fastest_rad_s(bound: BoundPlant, x0: ArrayLike) -> float:
@@ -32,16 +34,16 @@ def fastest_rad_s(bound: BoundPlant, x0: ArrayLike) -> float:
 
 
 def steps_a_stretch(bound: BoundPlant, rate_rad_s: float, stretch_s: float) -> int:
-    """The fewest steps of a stretch of time in which `rate_rad_s` is followed; raises BadInput where MOST are too few."""
+    """The fewest steps of a stretch of time in which `rate_rad_s` is followed; raises BadInput where MOST_SUBSTEPS are too few."""
     constants = rate_rad_s * stretch_s
     longest = ACCURATE_STEP if constants <= SETTLED_WITHIN else LARGEST_STEP
     needed = max(1, math.ceil(constants / longest))
-    if needed > MOST:
+    if needed > MOST_SUBSTEPS:
         raise BadInput(
             f"plant of {bound.plant.model}",
             "simulation",
             f"a motion of {rate_rad_s:.2g} rad/s, which takes {needed} steps in {1e3 * stretch_s:g} ms",
-            f"{MOST} steps a sample at most",
+            f"{MOST_SUBSTEPS} steps a sample at most",
             "leave out a state that is so fast: put its settled value in its place",
         )
     return needed

@@ -22,9 +22,9 @@ Array = NDArray[np.float64]
 # What is believed of the first half before any answer, (mean, standard deviation): that differences of some ten nats count at first, and of
 # some fifty where forms explain ten thousand; that a further effect costs what any wrong effect gains by chance; that nats by which the
 # logs are predicted over a second count in part, as they were fitted to.
-SHARES = {"size": (1.2, 0.7), "power": (0.28, 0.1), "further": (2.5, 1.5), "ahead": (0.3, 0.3)}
+BELIEVED = {"size": (1.2, 0.7), "power": (0.28, 0.1), "further": (2.5, 1.5), "ahead": (0.3, 0.3)}
 INTERCEPT_DECAY = 0.01  # a standard deviation of ten logits, which only keeps it finite where all answers are right
-SAME = 1e-9  # a feature with a smaller standard deviation does not vary
+UNVARIED_SD = 1e-9  # a feature with a smaller standard deviation does not vary
 SLOPE = 1e-7  # nats per unit, at which the second half is at its end
 ENDED = {
     "xatol": 1e-6,
@@ -33,10 +33,10 @@ ENDED = {
     "maxfev": 8000,
 }  # the first half, of four numbers, without slopes
 MISLED = 0.05  # of the answers, in which every candidate may be right alike
-LEAST = 0.01  # of a share: what is right and has less was not found
+LEAST_FOUND = 0.01  # of a share: what is right and has less was not found
 WITHHELD = 0.1  # of an answer, what each with a smaller library counts: of six gaps one is no library's
 
-UNLEARNED = ComparisonLaw(*(mean for mean, _ in SHARES.values()), *[0.0] * 4, *[0.5] * 2)
+UNLEARNED = ComparisonLaw(*(mean for mean, _ in BELIEVED.values()), *[0.0] * 4, *[0.5] * 2)
 
 
 def fit(examples: Sequence[Example], decay: float) -> ComparisonLaw:
@@ -64,7 +64,7 @@ def log_loss(law: ComparisonLaw, examples: Sequence[Example]) -> float:
 
 def _right(law: ComparisonLaw, entry: Example) -> float:
     explained, share = law.explained(entry.told), _share(law, entry)
-    return explained * share if share >= LEAST else 1.0 - explained
+    return explained * share if share >= LEAST_FOUND else 1.0 - explained
 
 
 def _share(law: ComparisonLaw, entry: Example) -> float:
@@ -72,10 +72,10 @@ def _share(law: ComparisonLaw, entry: Example) -> float:
 
 
 def _with_shares(law: ComparisonLaw, listed: Sequence[Example]) -> ComparisonLaw:
-    mean, sd = (np.array(values) for values in zip(*SHARES.values(), strict=True))
+    mean, sd = (np.array(values) for values in zip(*BELIEVED.values(), strict=True))
 
     def of(numbers: Array) -> ComparisonLaw:
-        return replace(law, **dict(zip(SHARES, numbers.tolist(), strict=True)))
+        return replace(law, **dict(zip(BELIEVED, numbers.tolist(), strict=True)))
 
     columns, right = _listed(listed)
     formed_nats = np.array([[entry.told.formed_nats] for entry in listed])
@@ -112,10 +112,10 @@ def with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: float
     told_of = [*examples, *smaller]
     weight = np.array([1.0] * len(examples) + [WITHHELD] * len(smaller))
     found = np.array([features(entry.told, law.shares(entry.told)) for entry in told_of])
-    right = np.array([_share(law, entry) >= LEAST for entry in told_of], float)
+    right = np.array([_share(law, entry) >= LEAST_FOUND for entry in told_of], float)
     mean = np.average(found, axis=0, weights=weight)
     sd = np.sqrt(np.average((found - mean) ** 2, axis=0, weights=weight))
-    varies = sd > SAME
+    varies = sd > UNVARIED_SD
     told = np.column_stack([np.ones(len(right)), (found - mean)[:, varies] / sd[varies]])
     numbers = _logistic(told, right, weight, np.array([INTERCEPT_DECAY, *[decay] * int(varies.sum())]))
     coefficients = np.zeros(len(sd))

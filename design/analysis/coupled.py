@@ -16,7 +16,9 @@ from design.loop import Poles, controller_polynomials, to_rad_s
 
 Array = NDArray[np.float64]
 
-POINTS = 400  # fewer than for the margins of one loop: here only the size of a peak is told, not where it crosses
+COUPLED_POINTS = (
+    400  # fewer than for the margins of one loop: here only the size of a peak is told, not where it crosses
+)
 
 
 def controller_states(controller: DeltaForm) -> tuple[Array, Array, Array, float]:
@@ -72,11 +74,11 @@ class Coupling:
 
 
 def coupling(plant: SampledPlant, controllers: tuple[DeltaForm, ...]) -> Coupling:
-    """The coupling of stable loops over POINTS frequencies up to the Nyquist frequency."""
-    omega_rad_s = np.geomspace(LOWEST_RAD_S, math.pi / plant.sample_period_s, POINTS)
+    """The coupling of stable loops over COUPLED_POINTS frequencies up to the Nyquist frequency."""
+    omega_rad_s = np.geomspace(LOWEST_RAD_S, math.pi / plant.sample_period_s, COUPLED_POINTS)
     gamma = np.expm1(1j * omega_rad_s * plant.sample_period_s)[:, np.newaxis, np.newaxis]
     G = plant.C @ np.linalg.solve(
-        gamma * np.eye(len(plant.N)) - plant.N, np.broadcast_to(plant.B, (POINTS, *plant.B.shape))
+        gamma * np.eye(len(plant.N)) - plant.N, np.broadcast_to(plant.B, (COUPLED_POINTS, *plant.B.shape))
     )
     K = np.stack([_response(controller, gamma[:, 0, 0]) for controller in controllers], axis=-1)
     S = np.linalg.inv(np.eye(len(controllers)) + G * K[:, np.newaxis, :])

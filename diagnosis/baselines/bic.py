@@ -16,8 +16,8 @@ from sim.added_effects import combined, library, redundant, with_values
 from sim.bind import BoundPlant
 from sim.effect import Effect
 
-STEP = 1e-3  # of a parameter: how far its difference quotient goes
-SHOWN = 10
+DIFFERENCE_STEP = 1e-3  # of a parameter: how far its difference quotient goes
+NAMES_TOLD = 10
 
 
 def by_bic(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis:
@@ -49,7 +49,7 @@ def _answer(plain: float, fits: list[tuple[float, Estimate, Effect]]) -> Diagnos
     gap = bool(fits and fits[0][0] < plain)
     effects = tuple(
         Hypothesis(effect.name, effect.class_text, float(weight), {effect.size.symbol: estimate})
-        for weight, (_, estimate, effect) in list(zip(weights[1:], fits, strict=True))[:SHOWN]
+        for weight, (_, estimate, effect) in list(zip(weights[1:], fits, strict=True))[:NAMES_TOLD]
     )
     return Diagnosis(
         verdict="gap" if gap else "no gap",
@@ -75,8 +75,8 @@ def _parameter_slopes(bound: BoundPlant, windows: Windows, error: Array, scale: 
     columns = []
     for k in np.flatnonzero(bound.sd > 0.0):
         p = bound.p.copy()
-        p[k] += STEP * (abs(p[k]) or bound.sd[k])
-        columns.append(((errors(bound, windows, p) - error) / scale).ravel() / STEP)
+        p[k] += DIFFERENCE_STEP * (abs(p[k]) or bound.sd[k])
+        columns.append(((errors(bound, windows, p) - error) / scale).ravel() / DIFFERENCE_STEP)
     return np.column_stack(columns)
 
 

@@ -17,7 +17,7 @@ from sim.bind import BoundPlant
 from sim.kernel.reference import reference
 from sim.model import Axis
 
-KEPT = 0.15  # of the largest term: smaller ones are dropped
+LEAST_TERM = 0.15  # of the largest term: smaller ones are dropped
 ROUNDS = 10
 TERMS_ALARM = 0.2  # share of the discrepancy that the terms must explain
 
@@ -74,7 +74,7 @@ def _thresholded(X: Array, d: Array) -> Array:
     for _ in range(ROUNDS):
         size[:] = 0.0
         size[kept] = np.linalg.lstsq(X[:, kept], d, rcond=None)[0]
-        still = np.abs(size) > KEPT * np.max(np.abs(size))
+        still = np.abs(size) > LEAST_TERM * np.max(np.abs(size))
         if np.array_equal(still, kept):
             break
         kept = still

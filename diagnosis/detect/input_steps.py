@@ -19,10 +19,10 @@ from sim.kernel.reference import reference
 from toolchain.host import FAST_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
-APART = 1.005  # 25 steps further a rounding must still fall alike
+STEP_RATIO = 1.005  # 25 steps further a rounding must still fall alike
 STEPS_APART = 1.004
 MOMENTS = 50  # of a log, of which slopes are taken
-ASKED = 40  # by what they say for the size of their errors; of these what they gain is asked
+MOST_GAINS = 40  # by what they say for the size of their errors; of these what they gain is asked
 DECLARATIONS = """
 void step_sums(int64_t rows, const double *u, const double *pull, const double *square, int64_t steps, const double *q, const double *hold,
                const double *shift, double *count, double *score, double *squares);
@@ -62,7 +62,7 @@ def likely_steps(
     way = _Rounded(column, push, kinds)
     steps = _asked_of(linearisation, way.column, entry.size)
     promises = _promises(linearisation, way, steps)
-    asked = np.argsort(-promises.max(axis=0))[:ASKED]
+    asked = np.argsort(-promises.max(axis=0))[:MOST_GAINS]
     steps, own = steps[asked], [kinds[place] for place in promises[:, asked].argmax(axis=0).tolist()]
     found: list[tuple[float, Kind]] = []
     for index in np.argsort(-_gains(linearisation, way, steps, own)).tolist():
@@ -79,7 +79,7 @@ def _asked_of(linearisation: Linearisation, column: int, size: float) -> Array:
     u = np.concatenate([filter_input.u[:, column] for filter_input in linearisation.filter_inputs])
     taken = min(float(np.ptp(u)), size) or size
     smallest, largest = decisions.SMALLEST_STEP * taken, min(decisions.LARGEST_STEP * size, taken)
-    return np.geomspace(smallest, largest, 1 + int(np.log(largest / smallest) / np.log(APART)))
+    return np.geomspace(smallest, largest, 1 + int(np.log(largest / smallest) / np.log(STEP_RATIO)))
 
 
 @dataclass(frozen=True, eq=False)

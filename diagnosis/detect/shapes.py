@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Shapes = Mapping[str, Callable[[Array], Array]]
 SQUARE = "{x} |{x}|"
-COUNTS = {"sin({count} {x})": 0.0, "cos({count} {x})": np.pi / 2}
+WAVES = {"sin({count} {x})": 0.0, "cos({count} {x})": np.pi / 2}
 
 
 def shaped(depends: str, name: str, x: Array, shapes: Shapes) -> Iterator[tuple[str, str, Array]]:
     return ((depends, text.format(x=name), np.asarray(shape(x), float)) for text, shape in shapes.items())
 
 
-def waves_a_turn(counts: Sequence[int], texts: Sequence[str] = tuple(COUNTS)) -> Shapes:
+def waves_a_turn(counts: Sequence[int], texts: Sequence[str] = tuple(WAVES)) -> Shapes:
     """Sines and cosines of so many waves a turn."""
-    return {text.format(count=count, x="{x}"): _wave(count, COUNTS[text]) for count in counts for text in texts}
+    return {text.format(count=count, x="{x}"): _wave(count, WAVES[text]) for count in counts for text in texts}
 
 
 def _wave(count: int, shift: float) -> Callable[[Array], Array]:

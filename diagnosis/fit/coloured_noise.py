@@ -25,7 +25,7 @@ from sim.effect import Effect, Role
 # the same of the axes' white noise, which may have taken their place.
 PUSH_SHARES, PUSH_TIMES_S, PUSH_LOWERS_NOISE = (0.001, 0.006, 0.03), (0.06, 0.25, 1.0, 4.0), 0.7
 READING_SIZES, READING_ROWS, READING_LOWERS_NOISE = (0.5, 2.0), (1.5, 6.0, 25.0, 100.0), (0.0, 1.5)
-REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
+BEND_FACTOR = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
 Numbers = tuple[float, float]  # standard deviation, correlation time in s
 
@@ -74,8 +74,8 @@ def coloured_noise_of(case: Case, hypothesis: Hypothesis) -> Hypothesis:
 
 
 def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, float]:
-    """What is known of a gust's size and time (one standard deviation of each), by how the likelihood bends over a factor of REACH to all
-    sides, with each known to a factor of e before."""
+    """What is known of a gust's size and time (one standard deviation of each), by how the likelihood bends over BEND_FACTOR to all sides,
+    with each known to a factor of e before."""
     names = gust.symbol(Role.STRENGTH), gust.symbol(Role.MEMORY)
     values = hypothesis.effects[gust.name]
 
@@ -83,11 +83,11 @@ def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, flo
         moved = {names[0]: by_size * values[names[0]], names[1]: by_time * values[names[1]]}
         return hypothesis.with_effects({**hypothesis.effects, gust.name: moved})
 
-    folds = (1.0, REACH, 1.0 / REACH)
+    folds = (1.0, BEND_FACTOR, 1.0 / BEND_FACTOR)
     v = np.reshape(likelihoods(case, [at(by_size, by_time) for by_size in folds for by_time in folds]), (3, 3))
     bends = v[1, 0] + v[2, 0] - 2.0 * v[0, 0], v[0, 1] + v[0, 2] - 2.0 * v[0, 0]
     both = 0.25 * (v[1, 1] + v[2, 2] - v[1, 2] - v[2, 1])
-    curvature = -np.nan_to_num([[bends[0], both], [both, bends[1]]]) / np.log(REACH) ** 2
+    curvature = -np.nan_to_num([[bends[0], both], [both, bends[1]]]) / np.log(BEND_FACTOR) ** 2
     bent, vectors = np.linalg.eigh(curvature)
     relative = np.sqrt(vectors**2 @ (1.0 / (1.0 + np.maximum(bent, 0.0))))
     return {name: float(share * values[name]) for name, share in zip(names, relative, strict=True)}

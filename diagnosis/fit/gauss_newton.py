@@ -17,7 +17,7 @@ from sim.effect import EffectParameter, Role, Values
 Array = NDArray[np.float64]
 LEAST_STEP_GAIN = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
-NUDGE = 1e-3  # finite differences, in units of a parameter's scale
+DIFFERENCE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, LAG_JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
 OUT_OF_REACH = 1e3  # references
 WITHOUT_SLOPE = (Role.JITTER, Role.BEGINNING, Role.HOLD, Role.SHIFT)  # found otherwise, or known
@@ -356,7 +356,7 @@ def flat_slopes(run: Pass) -> Array:
 def _difference(case: Case, hypothesis: Hypothesis, entry: Free, w: Array) -> Array:
     """The slope by a number that acts on the way of a signal, from a small step away from its bound."""
     value = entry.of(hypothesis)
-    step = NUDGE * entry.scale
+    step = DIFFERENCE * entry.scale
     step = step if value + step <= entry.parameter.upper else -step
     runs = passes(case, _with_number(hypothesis, entry, value + step))
     return np.zeros_like(w) if runs is None else (stacked(runs) - w) / step

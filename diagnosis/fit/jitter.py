@@ -24,7 +24,7 @@ from sim.effect import Role
 JITTER_SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay, scatter that is tried,
 JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
-SHARED = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
+DIFFERENCE_GAIN = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def most_shown_s(case: Case, output: str) -> float:
     if more <= decisions.SURE_ROUGHNESS * error:
         return 0.0
     faster = float(np.mean(rate[fast] ** 2) - np.mean(rate[~fast] ** 2))
-    return float(np.sqrt(SHARED * (more + decisions.SURE_ROUGHNESS * error) / faster))
+    return float(np.sqrt(DIFFERENCE_GAIN * (more + decisions.SURE_ROUGHNESS * error) / faster))
 
 
 def scatters(case: Case, name: str) -> bool:

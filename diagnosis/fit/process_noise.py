@@ -12,7 +12,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, scaled
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 
 # What is known of white noise beforehand: real and simulated rigs have 1e-3 to 0.5. Without, noise with a memory leaves none of it.
-KNOWN = (float(decisions.FIRST_PROCESS_NOISE), 1.0)
+KNOWN_BEFORE = (float(decisions.FIRST_PROCESS_NOISE), 1.0)
 LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
 # The most is where it starts: longer doubt would take the part of friction that gives before it slides.
 LEAST_DOUBT = -7.0  # log10 s
@@ -27,14 +27,14 @@ def axis_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
     """One number for all noise of each axis, so that what comes and goes grows with what is white, and that of rest where any axis has dry
     friction."""
     axes = range(len(hypothesis.process_noise))
-    found = [Number(partial(_noise, axis), partial(_with_all, case, axis), KNOWN) for axis in axes]
+    found = [Number(partial(_noise, axis), partial(_with_all, case, axis), KNOWN_BEFORE) for axis in axes]
     return found + _of_states(case, hypothesis) + _rest(case, hypothesis)
 
 
 def white_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
     """The same for white noise alone, where what comes and goes has numbers of its own."""
     axes = range(len(hypothesis.process_noise))
-    found = [Number(partial(_noise, axis), partial(_with_white, axis), KNOWN) for axis in axes]
+    found = [Number(partial(_noise, axis), partial(_with_white, axis), KNOWN_BEFORE) for axis in axes]
     return found + _of_states(case, hypothesis) + _rest(case, hypothesis)
 
 
@@ -43,7 +43,11 @@ def _of_states(case: Case, hypothesis: Hypothesis) -> list[Number]:
     speed of 1 rad/s."""
     sizes = case.measured_sizes
     return [
-        Number(partial(_state_noise, state), partial(_with_state_noise, state, size), (KNOWN[0] + size, KNOWN[1]))
+        Number(
+            partial(_state_noise, state),
+            partial(_with_state_noise, state, size),
+            (KNOWN_BEFORE[0] + size, KNOWN_BEFORE[1]),
+        )
         for state in hypothesis.state_noise
         if state in sizes
         for size in [float(np.log10(sizes[state]))]

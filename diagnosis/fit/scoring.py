@@ -20,11 +20,11 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 
 Array = NDArray[np.float64]
 NUDGE = 1e-4  # decades, over which slopes of the noise itself are taken
-MOST_STEPS = 10
+MOST_SCORING_STEPS = 10
 LITTLE_PROMISED = 1.0  # nats: a tenth of what tells two names apart (TAKEN_IN)
 NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
 UNKNOWN_SD = 1e3  # decades: next to nothing is known beforehand
-SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
+STEP_SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
 TWICE = 2.0 * float(np.log(10.0))  # of a decade of a number, that its variance grows by
 
@@ -48,7 +48,7 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
     at, runs = start, _passes(case, start, numbers)
     if runs is None:
         return start, -np.inf
-    for _ in range(MOST_STEPS if numbers else 0):
+    for _ in range(MOST_SCORING_STEPS if numbers else 0):
         g, information = _linear(at, runs, numbers)
         step, single = _step(at, numbers, g, information), _single(at, numbers, g, information)
         promises = [_promised(g, information, one) for one in single]
@@ -131,7 +131,7 @@ def _tries(
     hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Sequence[Array]
 ) -> Iterator[Hypothesis]:
     """Where the likelihood may be higher: shares of the whole step; and where axes stick, and slopes lead nowhere, each step `alone`."""
-    yield from (_moved(hypothesis, numbers, share * _decades(step)) for share in SHARES)
+    yield from (_moved(hypothesis, numbers, share * _decades(step)) for share in STEP_SHARES)
     yield from (_moved(hypothesis, numbers, _decades(one)) for one in alone)
 
 

@@ -19,7 +19,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise
 from sim.effect import EffectParameter, Role
 
 Array = NDArray[np.float64]
-TRIED = 13  # values at a time
+VALUES_AT_ONCE = 13  # values at a time
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
 POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
 STEP_FINELY = (
@@ -30,7 +30,7 @@ STEP_FINELY = (
 REFINED_ROUNDS = 5  # from where a first fit ended: its own rule stops earlier where little is gained
 MOST_TURNS = 5  # of what is rough and all else: an input's steps behind a delay of 25 ms took three
 VANISHED = 0.02  # of where a shape's search begins: so near none its slopes vanish
-LEVELS = np.geomspace(
+FRICTION_FACTORS = np.geomspace(
     0.5, 2.0, 7
 )  # of a friction that holds an axis: where it holds, slopes do not tell what more of it would do
 
@@ -95,7 +95,7 @@ def _refined_once(case: Case, hypothesis: Hypothesis, effects: Sequence[str]) ->
     for name in effects:
         start = _polished(case, start, name, STEP_FINELY) if _is_rough(case, name) else start
     for name in holding(case.library, effects):
-        start = _likeliest(case, start, name, LEVELS)
+        start = _likeliest(case, start, name, FRICTION_FACTORS)
     found = fit(case, start, rounds=REFINED_ROUNDS)
     for begun in [] if found is None else _rounder(case, found.hypothesis):
         found = _likelier(found, fit(case, begun, rounds=REFINED_ROUNDS))
@@ -146,7 +146,7 @@ def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[floa
     less likely than what such a shape costs."""
     found = start
     for reach in reaches:
-        found = _likeliest(case, found, effect, np.linspace(1.0 - reach, 1.0 + reach, TRIED))
+        found = _likeliest(case, found, effect, np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE))
     found = _reshaped(case, found, effect)
     plain = _at_multiples(case, start, effect, reaches)
     if plain is None:
@@ -163,7 +163,7 @@ def _at_multiples(case: Case, start: Hypothesis, name: str, reaches: Sequence[fl
         return None
     plain, size = start.with_value(name, shift.symbol, 0.0), effect.size.symbol
     for reach in reaches:
-        values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, TRIED)
+        values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE)
         plain = _likeliest_value(case, plain, name, size, values.tolist())
     return plain
 
@@ -172,9 +172,11 @@ def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:
     """The start with the likeliest of what else is rough in an effect, over its whole range, and then beside that."""
     for parameter in case.library.effects[name].parameters:
         if parameter.rough and not parameter.is_size:
-            values = np.linspace(parameter.lower, parameter.upper, TRIED)
+            values = np.linspace(parameter.lower, parameter.upper, VALUES_AT_ONCE)
             start = _likeliest_of(case, start, name, parameter, values)
-            beside = start.effects[name][parameter.symbol] + (values[1] - values[0]) * np.linspace(-1.0, 1.0, TRIED)
+            beside = start.effects[name][parameter.symbol] + (values[1] - values[0]) * np.linspace(
+                -1.0, 1.0, VALUES_AT_ONCE
+            )
             start = _likeliest_of(case, start, name, parameter, np.clip(beside, parameter.lower, parameter.upper))
     return start
 
@@ -197,7 +199,7 @@ def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | N
 
 def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:
     """The fit, or a likelier one from another level of a friction that holds its axis."""
-    start = _likeliest(case, found.hypothesis, effect, LEVELS)
+    start = _likeliest(case, found.hypothesis, effect, FRICTION_FACTORS)
     if start.effects[effect] == found.hypothesis.effects[effect]:
         return found
     return _likelier(found, fit(case, start, rounds=4)) or found

@@ -40,7 +40,7 @@ FORGOTTEN_ROWS = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 12, 0.1
 LITTLE_GAINED = 0.005  # of what losses gain, below which another round is not worth its time
 LOSS_ROUNDS = 8  # with what was found in the hypothesis there is less process noise, and more shows
-SHARES = np.geomspace(1e-3, 0.8, 60)
+LOSS_SHARES = np.geomspace(1e-3, 0.8, 60)
 OPENING = Lock()
 
 
@@ -115,7 +115,7 @@ def _fitted(
 
 def likely_share(case: Case) -> float:
     """The share p of lost frames with the most evidence."""
-    return float(SHARES[np.argmax([loss_evidence(case, share) for share in SHARES.tolist()])])
+    return float(LOSS_SHARES[np.argmax([loss_evidence(case, share) for share in LOSS_SHARES.tolist()])])
 
 
 def loss_evidence(case: Case, share: float) -> float:

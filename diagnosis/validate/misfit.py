@@ -10,7 +10,7 @@ from diagnosis.validate.prediction import WINDOW_S, Span, predictions, windows
 from sim.bind import BoundPlant
 from sim.kernel.reference import reference
 
-LEAST_ROWS = 5  # of a window: fewer hardly move
+LEAST_WINDOW_ROWS = 5  # of a window: fewer hardly move
 Array = NDArray[np.float64]
 
 
@@ -56,4 +56,4 @@ def foreseen_s(bound: BoundPlant, flight: FilteredLog) -> float:
         A = reference(model).A(0.0, x0, u0, bound.p, np.zeros(len(model.axes)))
     fastest_rad_s = float(np.max(np.linalg.eigvals(A).real)) if np.all(np.isfinite(A)) else 0.0
     grown_s = 1.0 / fastest_rad_s if fastest_rad_s > 0.0 else WINDOW_S
-    return min(WINDOW_S, max(grown_s, LEAST_ROWS * flight.step_s))
+    return min(WINDOW_S, max(grown_s, LEAST_WINDOW_ROWS * flight.step_s))

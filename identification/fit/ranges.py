@@ -7,7 +7,7 @@ from identification.runs.run import coefficient_names
 from records.errors import BadInput
 from sim.bind import BoundPlant
 
-LEAST = 1e-3  # of its size: dry friction of exactly 0 does not act, and so has no slope that would lead back
+LEAST_FRICTION = 1e-3  # of its size: dry friction of exactly 0 does not act, and so has no slope that would lead back
 FACTOR = 5.0  # by default a parameter lies between a fifth and five times its start
 
 
@@ -46,7 +46,7 @@ def _range(bound: BoundPlant, name: str, start: float, limits: tuple[float, floa
     size = max(own, sd)  # a guess with a wide sd may be far off
     if limits is None:
         lower, upper = (own / FACTOR, size * FACTOR) if sign == "positive" else (-size * FACTOR, size * FACTOR)
-        lower = LEAST * own if sign == "non-negative" else lower
+        lower = LEAST_FRICTION * own if sign == "non-negative" else lower
         return Range(max(start, lower), lower, upper, size)
     lower, upper = limits
     if not lower <= start <= upper:

@@ -19,7 +19,7 @@ from records.errors import BadInput
 from sim.substeps import LARGEST_STEP, fastest_rad_s
 
 Array = NDArray[np.float64]
-MOST = 64
+MOST_PER_SAMPLE = 64
 FOLLOWED = 1e-3  # of a channel's own motion: a start's prediction this near to that with half the step is good enough to fit from
 IMPOSSIBLE = 1e6  # of all motion read: no plant goes so far within a window
 SHIFT_SD = 0.1  # estimates that half the step would move by less than this are good enough to keep
@@ -31,9 +31,9 @@ def halved(run: Run) -> Run:
 
 
 def followed(run: Run) -> Run:
-    """The run in as many steps as its windows need with the plant's parameters as they are; raises BadInput where `MOST` break down."""
+    """The run in as many steps as its windows need with the plant's parameters as they are; raises BadInput where the most break down."""
     before = predicted(run, (), np.zeros(0))
-    while run.substeps < MOST:
+    while run.substeps < MOST_PER_SAMPLE:
         more = halved(run)
         after = predicted(more, (), np.zeros(0))
         if _near(run, before, after):
@@ -41,17 +41,17 @@ def followed(run: Run) -> Run:
         run, before = more, after
     if not np.all(np.abs(before - run.y) < IMPOSSIBLE * (np.ptp(run.y) + run.sd)):
         raise BadInput(
-            "log", run.name, f"a prediction that leaves all bounds, in {MOST} steps per sample too",
+            "log", run.name, f"a prediction that leaves all bounds, in {MOST_PER_SAMPLE} steps per sample too",
             "a plant whose fastest part shows at this sample rate", "check its parameters, or leave that part out",
         )  # fmt: skip
     return run
 
 
 def in_steps_of(run: Run, names: Sequence[str], theta: Array) -> Run:
-    """The run in as many steps a sample as the fastest motion at theta takes; as it is where `MOST` are too few."""
+    """The run in as many steps a sample as the fastest motion at theta takes; as it is where `MOST_PER_SAMPLE` are too few."""
     there = replace(run.bound, p=parameters_of(run, names, theta))
     needed = fastest_rad_s(there, run.x0[0]) * float(np.max(np.diff(run.t_s))) / LARGEST_STEP
-    return replace(run, substeps=max(run.substeps, math.ceil(needed))) if needed <= MOST else run
+    return replace(run, substeps=max(run.substeps, math.ceil(needed))) if needed <= MOST_PER_SAMPLE else run
 
 
 def _near(run: Run, before: Array, after: Array) -> bool:

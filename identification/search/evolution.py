@@ -11,7 +11,7 @@ from identification.runs.prediction import predicted
 
 Array = NDArray[np.float64]
 GENERATIONS, POPULATION = 60, 8  # the population is 8 members for each parameter
-SETTLED = 1e-3  # spread of the population's criteria, relative to their mean
+LEAST_SPREAD = 1e-3  # spread of the population's criteria, relative to their mean
 HUGE = 1e100  # of a motion that leaves all bounds; SciPy squares it
 
 
@@ -54,7 +54,7 @@ def evolution(
         callback=told,
         maxiter=GENERATIONS,
         popsize=POPULATION,
-        tol=SETTLED,
+        tol=LEAST_SPREAD,
         polish=False,
     )
     return unscaled(found.x)[places], tuple(best)

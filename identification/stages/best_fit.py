@@ -17,7 +17,7 @@ from identification.uncertainty.residuals import ResidualTest, tests_at
 Array = NDArray[np.float64]
 WORSE, MOST_LEFT = 1.5, 0.3
 SENSORS = 1.1  # times what a sensor alone leaves: as good as that
-DIGITS = 1e-12  # of an estimate, below which runs in double precision, in steps, tell nothing
+ROUNDED_OFF = 1e-12  # of an estimate, below which runs in double precision, in steps, tell nothing
 MOST_GROWTH = ROUNDING**-0.5  # of a window's slopes: beyond it the rounding of their squares outweighs a first reading
 NEARLY = 2.0  # times that from a fit that has not settled
 
@@ -55,7 +55,7 @@ def nothing_left(whole: Estimate) -> bool:
     Of an unstable plant that is no proof: slopes that have grown past all digits claim what no arithmetic could tell.
     """
     part = whole.belief.part(whole.own)
-    is_told = whole.growth <= MOST_GROWTH and bool(np.all(part.sd > DIGITS * np.abs(part.mean)))
+    is_told = whole.growth <= MOST_GROWTH and bool(np.all(part.sd > ROUNDED_OFF * np.abs(part.mean)))
     return is_told and all(test.white and _of_the_sensor(test) for test in whole.residuals)
 
 

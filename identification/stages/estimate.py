@@ -13,7 +13,7 @@ from identification.fit.normal_equations import ROUNDING, Point, at, growth
 from identification.fit.problem import Problem, Told, by_name
 from identification.fit.ranges import Range
 from identification.fit.solve import Watch, solve
-from identification.fit.steps import MOST, SHIFT_SD, finer, in_steps_of, shift_sd
+from identification.fit.steps import MOST_PER_SAMPLE, SHIFT_SD, finer, in_steps_of, shift_sd
 from identification.runs.run import Run
 from identification.search.methods import Search, Searched, search, started
 from identification.stages.weights import by_channel, by_correlation
@@ -163,7 +163,7 @@ def _fitted(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]
     while True:
         weighed, point = _weighed_fit(problem, known, watch)
         now = shift_sd(weighed, point)
-        if now <= SHIFT_SD or now > before / 2.0 or max(run.substeps for run in point.runs) >= MOST:
+        if now <= SHIFT_SD or now > before / 2.0 or max(run.substeps for run in point.runs) >= MOST_PER_SAMPLE:
             return weighed, point
         problem, before = replace(problem, start=point.theta, runs=finer(problem.runs, point)), now
 

@@ -12,8 +12,8 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
-SHARE = 0.1  # an absent parameter is taken to matter a tenth as much as the others
-LEAST = 1e-9  # a friction of exactly 0 has no slope: it does not act at all
+ABSENT_SHARE = 0.1  # an absent parameter is taken to matter a tenth as much as the others
+START_OF_ABSENT = 1e-9  # a friction of exactly 0 has no slope: it does not act at all
 REACH, BOUND = 100.0, 1e-3
 
 
@@ -39,19 +39,19 @@ def ranges_of_logs(
 def with_sizes(runs: Sequence[Run], ranges: Mapping[str, Range], absent: Sequence[str]) -> dict[str, Range]:
     """The ranges with size, bounds and, for what cannot be negative, a start above 0 for the parameters `absent`.
 
-    The size is that at which the parameter moves the readings by `SHARE` of what the other parameters do at theirs.
+    The size is that at which the parameter moves the readings by `ABSENT_SHARE` of what the other parameters do at theirs.
     """
     if not absent:
         return dict(ranges)
     names = tuple(ranges)
-    start = np.array([LEAST if name in absent else ranges[name].start for name in names])
+    start = np.array([START_OF_ABSENT if name in absent else ranges[name].start for name in names])
     effect = np.zeros(len(names))
     for run in runs:
         for block in blocks(run, names, start):
             effect += np.sum(block.by_parameter**2, axis=0)
     effect = np.sqrt(effect)
     others = [effect[k] * ranges[name].scale for k, name in enumerate(names) if name not in absent]
-    common = SHARE * float(np.median(others)) if others else 1.0
+    common = ABSENT_SHARE * float(np.median(others)) if others else 1.0
     found = dict(ranges)
     for name in absent:
         own = effect[names.index(name)]

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import MOST_GIVEN, NOTHING, axis_of, short, sign_of, strain_rate, with_axis, with_state
+from sim.edits import MOST_GIVEN, NEGLIGIBLE, axis_of, short, sign_of, strain_rate, with_axis, with_state
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
 
@@ -37,7 +37,7 @@ def effects(model: Model) -> Iterator[Effect]:
 
 def _edit(model: Model, z_0: sympy.Symbol, name: str) -> Model:
     z = symbol(f"bristles_{name}_{model.places.axes[name].length_unit}")
-    way = z_0 + NOTHING
+    way = z_0 + NEGLIGIBLE
     present = z_0 / way
     model = with_state(model, z, present * strain_rate(axis_of(model, name).velocity, z, way))
     # Where friction depends on its direction, the bristles' stretch stands for that: dry friction that is gone has none.

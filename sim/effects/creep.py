@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import NOTHING, axis_of, short, with_axis
+from sim.edits import NEGLIGIBLE, axis_of, short, with_axis
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -37,7 +37,7 @@ def effects(model: Model) -> Iterator[Effect]:
 
 
 def _edit(model: Model, v_c: sympy.Symbol, name: str) -> Model:
-    present = GIVEN_WAY * v_c / (v_c + NOTHING)
-    e = sympy.exp(-2 * sympy.Abs(axis_of(model, name).velocity) / (v_c + NOTHING))
+    present = GIVEN_WAY * v_c / (v_c + NEGLIGIBLE)
+    e = sympy.exp(-2 * sympy.Abs(axis_of(model, name).velocity) / (v_c + NEGLIGIBLE))
     share = 1 - 2 * present * e / (1 + e)
     return with_axis(model, name, lambda axis: replace(axis, coulomb=axis.coulomb * share))

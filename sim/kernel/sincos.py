@@ -8,7 +8,7 @@ import mpmath
 DIRECT_RAD = 0.8  # a little over pi/4, so that stages just beyond a stop at 45 deg still go the short way
 REDUCED_RAD = 1.0e5
 COEFFICIENTS = 6
-DIGITS = 60
+WORKING_DIGITS = 60
 
 
 @cache
@@ -18,7 +18,7 @@ def sincos_header() -> str:
     sin a = a + a z S(z), cos a = 1 - z/2 + z^2 C(z), z = a^2; S and C interpolate at 6 Chebyshev points of [0, DIRECT_RAD^2], which
     leaves 2e-17 relative, well below the rounding of a double.
     """
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(WORKING_DIGITS):
         sine = _interpolated(lambda z: (mpmath.sin(mpmath.sqrt(z)) / mpmath.sqrt(z) - 1) / z)
         cosine = _interpolated(lambda z: (mpmath.cos(mpmath.sqrt(z)) - 1 + z / 2) / z**2)
         first, second, third = _half_pi_parts()

@@ -11,7 +11,7 @@ import pytest
 from blind import calibrate, family
 from blind.calibration.calibrate import DECAYS, quality
 from blind.calibration.examples import Example, Family
-from blind.calibration.fit import SHARES, UNLEARNED, fit, log_loss, partly
+from blind.calibration.fit import BELIEVED, UNLEARNED, fit, log_loss, partly
 from blind.calibration.withheld import withheld
 from blind.cases.make import salt_of
 from blind.cases.sealed import seal
@@ -68,7 +68,9 @@ def test_probabilities_of_the_true_law_are_as_honest_out_of_family_as_chance_all
 def test_few_answers_have_a_finite_law_and_what_none_tells_of_stays_as_believed_before() -> None:
     told = ModelComparison((Candidate("a.one", 100.0, 0.0),), 100.0, 100.0, 5.0, 0.5)
     found = fit([Example(told, (True,), (True,))] * 3, DECAYS[0])
-    assert [getattr(found, name) for name in SHARES] == pytest.approx([mean for mean, _ in SHARES.values()], abs=1e-3)
+    assert [getattr(found, name) for name in BELIEVED] == pytest.approx(
+        [mean for mean, _ in BELIEVED.values()], abs=1e-3
+    )
     assert np.isfinite([found.intercept, found.left, found.gain, found.favour]).all()
     assert found.explained(told) > 0.9
 

@@ -24,13 +24,15 @@ from twinlaw.workflows.diagnose.partitions import count_of, cut, splits_of
 from twinlaw.workflows.diagnose.splits import consistency, diagnosed, facts
 
 SCHEMA = "splits/1"
-MOST = 12  # of them by default: all of three logs, all but two of four
+MOST_SPLITS = 12  # of them by default: all of three logs, all but two of four
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--plant, --most, --workers, --cluster, --out, --json, LOG ..."""
     options.plant(parser)
-    parser.add_argument("--most", type=options.count, default=MOST, metavar="N", help="splits; default: %(default)s")
+    parser.add_argument(
+        "--most", type=options.count, default=MOST_SPLITS, metavar="N", help="splits; default: %(default)s"
+    )
     sweeping.workers(parser)
     options.out(parser)
     options.as_json(parser)

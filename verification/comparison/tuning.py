@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 POPULATION = 6  # times the numbers that are open
 GENERATIONS = 50  # some minutes on one core; on ce150_velagic the mean error is then 7.2 deg (pid) and 6.3 deg (fuzzy)
-DIGITS = 4  # of a number that is kept
+KEPT_DIGITS = 4  # of a number that is kept
 
 
 class TunableLaw(FlownLaw):
@@ -42,7 +42,7 @@ class TunableLaw(FlownLaw):
 
 
 def tune(row: EquationController, points: Points, seed: int) -> dict[str, dict[str, float]]:
-    """The open numbers by axis, to DIGITS digits; raises BadInput where none is open."""
+    """The open numbers by axis, to KEPT_DIGITS digits; raises BadInput where none is open."""
     tunable = row.tunable
     if tunable is None:
         remedy = "choose pid or fuzzy, or leave --tune out"
@@ -86,7 +86,7 @@ def _numbers(tunable: Tunable, x: Array) -> dict[str, dict[str, float]]:
     """The numbers at a point of the search, as a plant file will state them."""
     found: dict[str, dict[str, float]] = {axis: {} for axis in AXES}
     for (axis, entry), value in zip(_each(tunable), x.tolist(), strict=True):
-        found[axis][entry.name] = float(f"{value if entry.linear else math.exp(value):.{DIGITS}g}")
+        found[axis][entry.name] = float(f"{value if entry.linear else math.exp(value):.{KEPT_DIGITS}g}")
     return found
 
 

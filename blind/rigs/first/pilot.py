@@ -12,7 +12,7 @@ from blind.simulation.native import opened
 from blind.simulation.rest import rest, rotor_damping, rotor_thrust
 
 Array = NDArray[np.float64]
-POINTS = 9
+TABLED_POINTS = 9
 TABLED_RAD = 0.74
 # rad/s, at bandwidth 1: integral, body twice, rotor.
 POLES = (np.array([-1.6, -2.8, -3.6, -8.5]), np.array([-1.2, -2.2, -2.8, -6.0]))
@@ -27,8 +27,8 @@ def rotor_slope(rig: Rig, rotor: str, speed_rad_s: float) -> tuple[float, float]
 def make_pilot(rig: Rig, bandwidth: float) -> Any:
     """The C structure control_t for a rig, with all poles times `bandwidth`."""
     ffi, _ = opened(PROGRAM)
-    grid = np.linspace(-TABLED_RAD, TABLED_RAD, POINTS)
-    pilot = ffi.new("control_t *", {"points": POINTS, "from_rad": grid[0], "step_rad": grid[1] - grid[0]})
+    grid = np.linspace(-TABLED_RAD, TABLED_RAD, TABLED_POINTS)
+    pilot = ffi.new("control_t *", {"points": TABLED_POINTS, "from_rad": grid[0], "step_rad": grid[1] - grid[0]})
     pilot.track_rad_s, pilot.period_s = 32.0, PERIOD_S
     for index, psi in enumerate(grid):
         volts, speeds = rest(rig, psi, FASTEST_RAD_S)

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 # Short windows first: a model that is stable over 2 s leads to one that is over 6 s; over the whole flight at once a poor start diverges.
 LENGTHS_s = (2.0, 6.0, np.inf)
 ROUNDS = 25
-SETTLED = 1e-4  # relative fall of the cost below which a stage ends
+LEAST_FALL = 1e-4  # relative fall of the cost below which a stage ends
 DRIFT_s = 20.0  # what is known of a drift beforehand: one margin in so many seconds, one sd
 START = 0.1  # and of a start: so many margins beside its measured value, one sd
 GOOD = 0.1  # error of a good run in margins, by which such knowledge weighs against the run
@@ -108,7 +108,7 @@ def _stage(model: Model, task: _Task) -> tuple[Model, Own, list[float]]:
             continue
         point = better
         costs.append(point.cost)
-        if costs[-2] - costs[-1] < SETTLED * costs[-2]:
+        if costs[-2] - costs[-1] < LEAST_FALL * costs[-2]:
             break
     return point.model, point.own, costs
 

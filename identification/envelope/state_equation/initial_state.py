@@ -17,7 +17,7 @@ from identification.margins import REQUIRED_s
 
 Array = NDArray[np.float64]
 
-REACH = 0.25  # a start may move by so many margins from its measured value: some four sd of a good sensor
+MARGINS_MOVED = 0.25  # a start may move by so many margins from its measured value: some four sd of a good sensor
 TRIM_s = 10.0  # and an error of the trim by a margin in so many seconds
 GRID = 21  # places that are tried for one state
 
@@ -55,7 +55,7 @@ def over_grid(model: Model, flight: Deviations, margins: Array, rounds: int = 2)
     moved = np.zeros_like(start)
     for _ in range(rounds):
         for i, margin in enumerate(margins):
-            places = np.linspace(-REACH * margin, REACH * margin, GRID)
+            places = np.linspace(-MARGINS_MOVED * margin, MARGINS_MOVED * margin, GRID)
             others = base + effects[:, :, : len(start)] @ np.where(np.arange(len(start)) == i, 0.0, moved)
             runs = others[None] + places[:, None, None] * effects[None, :, :, i]
             moved[i] = places[_least_outside((runs - x) / margins)]
@@ -65,13 +65,13 @@ def over_grid(model: Model, flight: Deviations, margins: Array, rounds: int = 2)
 def automatic(model: Model, flight: Deviations, margins: Array, trim: bool = False) -> Tuned:
     """The start, and with `trim` the drift of an error of the trim too, that minimise the squared error in margins within bounds.
 
-    The bounds are `REACH` and `TRIM_s`; at the minimum the conditions of Karush, Kuhn and Tucker hold. The whole flight counts, unless
-    its late errors bend the start so far that the three-second rule is broken: then half of it, a quarter, and so on.
+    The bounds are `MARGINS_MOVED` and `TRIM_s`; at the minimum the conditions of Karush, Kuhn and Tucker hold. The whole flight counts,
+    unless its late errors bend the start so far that the three-second rule is broken: then half of it, a quarter, and so on.
     """
     x, needed = flight.x[0], round(REQUIRED_s / flight.sample_period_s)
     effects = _effects(model, len(x))[:, :, : (2 if trim else 1) * len(margins)]
     base = free_run(model, flight.u, flight.x[:, 0])[0]
-    reach = REACH * margins
+    reach = MARGINS_MOVED * margins
     if trim:
         reach = np.concatenate([reach, margins * flight.sample_period_s / TRIM_s])
     rows = len(x)

@@ -17,7 +17,7 @@ RAMP_S, RAMP_V = 45.0, (4.0, 6.0)
 DURATION_S = 60.0
 LEVELS = (1.04, 1.10)  # of the voltage that lifts the arm
 LEVELS_BY_HAND = (1.05, 1.075)  # the hand moves the arm too
-WINDOW_S = 10.0
+SWING_WINDOW_S = 10.0
 MEDIAN_ROWS, SMOOTH_ROWS = 5, 11
 
 
@@ -74,7 +74,7 @@ def run(experiment: Experiment, bound: BoundPlant) -> Run:
     t_s, psi = motion["t_s"], motion["psi_rad"]
     step_rad = bound.plant.sensors["phi_rad"]
     turning = turning_rad_s(t_s, motion["phi_rad"], step_rad) if "phi_rad" in motion else np.zeros(t_s.size)
-    begins, stops = even_windows(t_s, psi, _free_from_s(t_s, psi), WINDOW_S)
+    begins, stops = even_windows(t_s, psi, _free_from_s(t_s, psi), SWING_WINDOW_S)
     u = np.column_stack([motion["u_M_V"], turning])
     part = subsystem(bound, models.elevation(), {"mount_rad": 0.0})
     return windowed(experiment.kind, part, t_s, u, psi, "psi_rad", begins, stops)

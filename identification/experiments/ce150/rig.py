@@ -14,7 +14,7 @@ from toolchain.host import STRICT_FLOAT_FLAGS, build_shared, load_shared
 Array = NDArray[np.float64]
 FOLDER = Path(__file__).parent
 PERIOD_S = 0.01
-STEPS = 10  # per sample of 10 ms
+SUBSTEPS = 10  # per sample of 10 ms
 STATES = (
     "omega_M_rad_s",
     "psi_rad",
@@ -57,7 +57,7 @@ class Rig:
         ffi, lib = _library()
         inputs = np.ascontiguousarray(np.vstack([u, np.asarray(u)[-1:]]), dtype=float)
         state, history = np.array(x, dtype=float), np.empty((len(inputs), len(STATES)))
-        steps = max(1, round(STEPS * period_s / PERIOD_S))
+        steps = max(1, round(SUBSTEPS * period_s / PERIOD_S))
         truth, setup = _struct(ffi, "rig_truth", self._parameters()), _struct(ffi, "rig_setup", vars(self.setup))
         pointers = [ffi.cast("double *", array.ctypes.data) for array in (inputs, state, history)]
         lib.rig_run(truth, setup, len(inputs), steps, t_s, period_s, *pointers)

@@ -13,7 +13,7 @@ from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
 PERIOD_S = 0.01
-STEPS = 2  # Runge-Kutta steps per sample
+SUBSTEPS = 2  # Runge-Kutta steps per sample
 UPRIGHT = math.pi / 2  # psi of a level arm
 State = tuple[float, ...]  # lag and speed of both motors as shares of those at 1 MU; psi, psi', phi, phi'
 PSI, PHI = 4, 6
@@ -37,8 +37,8 @@ class VelagicRig:
             p["Ic_inv"] = 0.0  # a screw makes the azimuth's inertia infinite
         history = [x]
         for u_1, u_2 in np.asarray(u_MU, dtype=float).tolist():
-            for _ in range(STEPS):
-                x = _stopped(_step(p, x, u_1, u_2, PERIOD_S / STEPS), p)
+            for _ in range(SUBSTEPS):
+                x = _stopped(_step(p, x, u_1, u_2, PERIOD_S / SUBSTEPS), p)
             history.append(x)
         return history
 

@@ -22,11 +22,11 @@ Array = NDArray[np.float64]
 Residual = Callable[[Array], Array | None]
 FIRST_STEP, LATER_STEP = 0.05, 1e-4  # of a parameter's size, for the first n + 1 points and for later ones
 MOST_STEPS = 200
-SETTLED = 1e-7  # relative gain of J by a new set of points that is none
+LEAST_GAIN = 1e-7  # relative gain of J by a new set of points that is none
 # Relative gain of J over as many steps as new points would cost, below which secants are turned no further.
 STALE = 1e-3
 MU_MOST = 1e8
-SAME_DIGITS = 7  # of J, as far as a settled search brings it: SETTLED
+SAME_DIGITS = 7  # of J, as far as a settled search brings it: LEAST_GAIN
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ def secant_search(residual: Residual, start: Array, size: Array) -> Found | None
         after, F = _descend(residual, best, F, S, size)
         gain = best.J - after.J
         best = Found(best.start, after.theta, after.J, after.evaluations + spent, False)
-        stalls = stalls + 1 if gain <= SETTLED * best.J else 0
+        stalls = stalls + 1 if gain <= LEAST_GAIN * best.J else 0
         step = max(LATER_STEP, step / 10.0)
         if stalls and step == LATER_STEP:
             return Found(best.start, best.theta, best.J, best.evaluations, True)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from diagnosis.hypothesis.case import FilteredLog
-from diagnosis.validate.misfit import LEAST_ROWS, foreseen_s
+from diagnosis.validate.misfit import LEAST_WINDOW_ROWS, foreseen_s
 from records.plant import load_plant
 from sim.bind import bind
 from tests.own_plants import MAGNET
@@ -32,5 +32,5 @@ def test_a_ball_below_its_magnet_is_asked_for_the_time_constant_of_an_error(tmp_
 def test_rows_that_are_far_apart_are_a_few_at_least_and_a_stable_plant_is_asked_for_a_second(tmp_path: Path) -> None:
     bound = bind(load_plant(MAGNET.write(tmp_path, "magnet")))
     current_A = 0.01 * math.sqrt(0.068 * 9.81 / 6.5e-5)
-    assert foreseen_s(bound, log([0.0, 0.0, current_A], 10.0 * current_A, 0.05)) == LEAST_ROWS * 0.05
+    assert foreseen_s(bound, log([0.0, 0.0, current_A], 10.0 * current_A, 0.05)) == LEAST_WINDOW_ROWS * 0.05
     assert foreseen_s(bound, log([0.0, 0.0, 0.0], 0.0, 1e-3)) == 1.0

@@ -7,7 +7,13 @@ from identification.envelope.flights.flight import Deviations
 from identification.envelope.state_equation import initial_state
 from identification.envelope.state_equation.closed_loop import optimise
 from identification.envelope.state_equation.free_run import Model, free_run, model_of, one_step, slopes
-from identification.envelope.state_equation.initial_state import REACH, as_measured, automatic, by_hand, over_grid
+from identification.envelope.state_equation.initial_state import (
+    MARGINS_MOVED,
+    as_measured,
+    automatic,
+    by_hand,
+    over_grid,
+)
 from identification.envelope.state_equation.recursive import batch, pairs
 
 # A pair of eigenvalues of modulus 1.002 and a period of 2 pi / 0.06 samples, as a phugoid's.
@@ -75,7 +81,7 @@ def test_a_drift_is_not_taken_for_dynamics():
 
 def test_automatic_tuning_finds_a_shift_within_its_bounds():
     data, shift = flown(0.0, flights=1), np.array([0.2, -0.05])
-    assert np.all(np.abs(shift) < REACH * MARGINS)
+    assert np.all(np.abs(shift) < MARGINS_MOVED * MARGINS)
     shifted = Deviations(0.05, data.u, data.x.copy(), data.y, data.trim, data.names)
     shifted.x[0, 0] += shift
     assert automatic(TRUTH, shifted, MARGINS).start == pytest.approx(data.x[0, 0], abs=2e-3)
@@ -104,7 +110,7 @@ def test_beyond_a_bound_it_stays_there_and_no_step_inwards_helps():
         return np.sum(((free_run(TRUTH, data.u, start[None])[0] - shifted.x[0]) / MARGINS) ** 2)
 
     found = automatic(TRUTH, shifted, MARGINS).start
-    assert found[0] == pytest.approx(shifted.x[0, 0, 0] - REACH * MARGINS[0], abs=1e-9)
+    assert found[0] == pytest.approx(shifted.x[0, 0, 0] - MARGINS_MOVED * MARGINS[0], abs=1e-9)
     outwards, along = np.array([-1e-4, 0.0]), np.array([0.0, 1e-4])
     assert cost(found + outwards) < cost(found)
     assert cost(found) <= min(cost(found + along), cost(found - along))

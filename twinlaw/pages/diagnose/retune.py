@@ -8,8 +8,8 @@ from records.diagnosis import Diagnosis
 from records.plant import Plant
 from twinlaw.pages.diagnose.words import shown
 
-MOST = 3
-NOTHING = 0.1  # standard deviations below which a number has not moved
+MOST_MOVED = 3
+UNMOVED_SD = 0.1  # standard deviations below which a number has not moved
 LOWERED = 0.5  # of the stated plant's error that a re-tune must leave at most to be told
 
 
@@ -27,10 +27,10 @@ class Moved:
 
 
 def moved_most(result: Result) -> tuple[Moved, ...]:
-    """The numbers of the improved plant that moved furthest, at most MOST, the furthest first."""
+    """The numbers of the improved plant that moved furthest, at most MOST_MOVED, the furthest first."""
     found = [*_parameters(result), *_stated_effects(result)]
-    far = [entry for entry in found if abs(entry.away_sd) >= NOTHING]
-    return tuple(sorted(far, key=lambda entry: -abs(entry.away_sd))[:MOST])
+    far = [entry for entry in found if abs(entry.away_sd) >= UNMOVED_SD]
+    return tuple(sorted(far, key=lambda entry: -abs(entry.away_sd))[:MOST_MOVED])
 
 
 def _parameters(result: Result) -> Iterator[Moved]:

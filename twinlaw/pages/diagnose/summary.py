@@ -20,7 +20,7 @@ from twinlaw.pages.diagnose.words import (
 )
 from twinlaw.pages.quality import quality_sentence
 
-MOST = 5
+MOST_TOLD = 5
 
 
 def summary_text(diagnosis: Diagnosis, moved: Sequence[Moved] = (), widths: Mapping[str, float] = {}) -> str:
@@ -48,7 +48,7 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
     if diagnosis.unknown.form:
         yield f"sparse regression suggests: {diagnosis.unknown.form}"
     if diagnosis.places and diagnosis.verdict == "gap":
-        yield "places: " + ", ".join(f"{row.place} {row.share:.0%}" for row in diagnosis.places[:MOST])
+        yield "places: " + ", ".join(f"{row.place} {row.share:.0%}" for row in diagnosis.places[:MOST_TOLD])
     if diagnosis.error_responses:
         yield surest_answer(diagnosis)
     yield "found: " + (" + ".join(diagnosis.found) or "nothing to add")
@@ -66,7 +66,7 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
 def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> list[tuple[str, str, str]]:
     """All that may explain the gap, the most probable first, and last that nothing does that is known."""
     ranked = []
-    for h in diagnosis.effects[:MOST]:
+    for h in diagnosis.effects[:MOST_TOLD]:
         lines = [
             (name if place == 0 else f"  with {name}", f"{h.probability:.3f}" if place == 0 else "", size)
             for place, (name, _, size) in enumerate(sized(h, widths, " "))

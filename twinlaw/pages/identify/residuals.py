@@ -12,7 +12,7 @@ from twinlaw.pages.page import Section
 from twinlaw.pages.plots import BLUE, GREY, ORANGE, Array, Curve, Panel, stack
 from twinlaw.pages.quality import colour_of
 
-MOST = 1200  # readings of a channel that are drawn: every so manyth of more
+MOST_DRAWN = 1200  # readings of a channel that are drawn: every so manyth of more
 FEW = 60  # readings up to which each is a dot, and its number in the record the abscissa
 Index = NDArray[np.int64]
 
@@ -68,7 +68,7 @@ def _few(run: Run, number: int, y_model: Array) -> tuple[Panel, Panel]:
 def _drawn(run: Run, number: int) -> Index:
     """Places of the readings of one channel that are drawn."""
     places = np.flatnonzero(run.channel == number)
-    return np.asarray(places[:: max(1, -(-places.size // MOST))])
+    return np.asarray(places[:: max(1, -(-places.size // MOST_DRAWN))])
 
 
 def _broken(values: Array, run: Run, places: Index) -> Array:

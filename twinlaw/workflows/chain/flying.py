@@ -19,7 +19,7 @@ from sim.kernel.law import is_kernel_s
 from sim.loop import Wired, fly, fly_law, steps_a_sample
 from sim.manoeuvres import Manoeuvre, flight, steps, stir
 from sim.simulate import simulate
-from sim.substeps import MOST, fastest_rad_s, steps_a_stretch
+from sim.substeps import MOST_SUBSTEPS, fastest_rad_s, steps_a_stretch
 from sim.tracking import Tracking, tracking
 from sim.wiring import wiring
 from twinlaw.cli.console import stage
@@ -62,11 +62,11 @@ def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
         error = step_error(bound, moved.t_s, moved.x0, moved.u, substeps=substeps)
         while not np.isfinite(error.difference).all():
             substeps *= 2
-            if substeps > MOST:
+            if substeps > MOST_SUBSTEPS:
                 raise BadInput(
                     f"plant of {bound.plant.model}",
                     "simulation",
-                    f"outputs that leave all bounds, in steps of {1e3 * moved.t_s[1] / MOST:.2g} ms",
+                    f"outputs that leave all bounds, in steps of {1e3 * moved.t_s[1] / MOST_SUBSTEPS:.2g} ms",
                     "a plant that stays finite while its inputs change",
                     "check units and signs, or leave out a state that is so fast",
                 )
