@@ -29,7 +29,7 @@ from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
 from diagnosis.seeing import alarmed, alone_of, beside_noise, detected_anew, seen_of
-from diagnosis.standing import confirmed_by, may_be_missing, of_consequence
+from diagnosis.standing import confirmed_by, is_noise, may_be_missing, of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
 from records.reasons import Note
@@ -46,6 +46,9 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen, found = _explained(seen)
     if found is None:
         return _nothing(seen, noisy, material, Exit.YIELDING_EXPLAINS)
+    seen, noise = is_noise(noisy, seen, found)
+    if noise:
+        return _nothing(seen, noisy, material, Exit.NOTHING_SEEN)
     beyond = retune(seen.case, seen.retuned.fit)
     seen = confirmed_by(seen, found, beyond)
     if not alarmed(seen.detection.p):

@@ -1,4 +1,4 @@
-"""Whether a gap stands: a small one must be explained by evidence, and what explains any must predict better."""
+"""Whether a gap stands: a small one must be explained by evidence, and what explains any must predict better, be it noise that does."""
 
 from dataclasses import replace
 from enum import IntEnum
@@ -11,9 +11,10 @@ from diagnosis.decide.weighing import named
 from diagnosis.decisions import decided, held_against
 from diagnosis.result import Exit, Judged, Seen
 from diagnosis.search.beam import Search
+from diagnosis.search.draughts import gust_shares
 from diagnosis.search.retune import Retune
 from diagnosis.seeing import false_alarm
-from diagnosis.validate.fitted_logs import readings_of
+from diagnosis.validate.fitted_logs import FittedLogs, readings_of
 from records.reasons import Decision, Note
 
 
@@ -27,6 +28,24 @@ class Consequence(IntEnum):
 
 _OUTCOMES = ("too small to matter", "may matter, not surely", "matters")
 _EXITS = {Consequence.NONE: Exit.TOO_SMALL, Consequence.PERHAPS: Exit.TOO_UNSURE}
+
+
+def is_noise(noisy: Seen, seen: Seen, found: Search) -> tuple[Seen, bool]:
+    """Whether the plant alone with its noise, `noisy`, explains the logs as well as the likeliest name that was sought without: then it is
+    no likelier beside noise of its own, nor does it predict the logs better, and a torque that comes and goes is more than is usual."""
+    names = [entry for entry in found.fitted if entry.effects]
+    largest = max(gust_shares(noisy.case, noisy.retuned.fit.hypothesis).values(), default=0.0)
+    if seen.retuned is noisy.retuned or not names or largest < decisions.USUAL_GUST:
+        return seen, False
+    of, gain = " + ".join(names[0].effects), names[0].evidence - noisy.retuned.evidence
+    likelier = gain > decisions.TAKEN_IN
+    rule = decided("more_than_noise", of, gain, decisions.TAKEN_IN, "stands" if likelier else "as likely as noise")
+    if likelier:
+        return seen.because(rule), False
+    ahead = FittedLogs(seen.case).gain(names[0].fit.hypothesis, noisy.retuned.fit.hypothesis)
+    better = ahead >= decisions.MATTERS
+    further = decided("foresees_more_than_noise", of, ahead, decisions.MATTERS, "stands" if better else "noise")
+    return seen.because(rule, further), not better
 
 
 def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
