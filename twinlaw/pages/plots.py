@@ -74,6 +74,9 @@ class Panel:
     within: tuple[float, float] | None = None
 
 
+EMPTY = Panel("", ())  # a place of a grid where there is nothing to show
+
+
 def stack(panels: Sequence[Panel], xlabel: str, *, panel_height_in: float = 1.9) -> str:
     """Panels one above the other over the same abscissa, as SVG text."""
     with mpl.rc_context(STYLE):
@@ -156,6 +159,9 @@ def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
 
 
 def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
+    if panel is EMPTY:
+        axes.set_axis_off()
+        return
     for curve in panel.curves:
         style: Any = {"linestyle": curve.dash, "marker": curve.marker or None, "markersize": curve.marker_size}
         style["linewidth"] = curve.width

@@ -12,7 +12,7 @@ from records.loops import Loop
 from records.quality import Colour, Quality, flag
 from records.text.units import shown, unit_of
 from twinlaw.pages.page import Page, Section, Table
-from twinlaw.pages.plots import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, grid, row, stack
+from twinlaw.pages.plots import BLACK, BLUE, EMPTY, GREEN, GREY, ORANGE, RED, Curve, Panel, grid, row, stack
 from twinlaw.pages.quality import quality_section, quality_sentence
 from twinlaw.pages.run.design import design_heading, design_rows, scheduled_over
 
@@ -144,10 +144,17 @@ def _small(loop: Loop, value: float) -> str:
 
 
 def coefficient_plot(report: DesignReport) -> str:
-    """q_i, p_i and u_ff of both axes over Psi, as SVG text."""
+    """q_i, p_i and u_ff of all loops over the schedule, as SVG text; a loop of fewer states leaves its place empty."""
     axes = report.axes
-    lines = [[_coefficient(report, axis, *which) for axis in axes] for which in _which(report.axes[0])]
+    which = sorted(
+        {one for axis in axes for one in _which(axis)}, key=lambda one: (("q", "p", "u_ff").index(one[0]), one[1])
+    )
+    lines = [[_coefficient(report, axis, *one) if _has(axis, *one) else EMPTY for axis in axes] for one in which]
     return grid(lines, [axis.axis for axis in axes], _schedule_label(report), height_in=1.3)
+
+
+def _has(axis: AxisReport, of: str, place: int) -> bool:
+    return of == "u_ff" or place < len(getattr(axis.schedule, of))
 
 
 def _which(axis: AxisReport) -> list[tuple[str, int]]:
