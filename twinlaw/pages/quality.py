@@ -26,6 +26,11 @@ def quality_sentence(quality: Quality) -> str:
     return f"{word}: {'; '.join(told[:SAID])}{more}."
 
 
+def quality_told(quality: Quality, cause: str) -> str:
+    """The colour, and why it is not green; behind it, where it is known, the cause of that."""
+    return " ".join(filter(None, (quality_sentence(quality), cause)))
+
+
 def _size(look: Look) -> float:
     """How far beyond green, by factor; flags come first."""
     if look.criterion not in BY_NAME:

@@ -16,12 +16,14 @@ from records.verification import verification_text
 from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.page import page_text
+from twinlaw.pages.quality import quality_told
 from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design import design_facts, design_heading, design_rows
 from twinlaw.pages.run.report import run_page
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, left_sentence, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.building import build_image, generate_sources
+from twinlaw.workflows.chain.causes import cause
 from twinlaw.workflows.chain.designing import Designed, design_controller, poles_of, roll_off_trade
 from twinlaw.workflows.chain.flying import ChainFlight
 from twinlaw.workflows.chain.verifying import demand, verify_table
@@ -60,6 +62,7 @@ def run(chosen: argparse.Namespace) -> int:
     demand(verification)
     flight = _flown(designed, chosen)
     save_log(out / "run.csv", flight.log)
+    why = cause(designed.bound, designed.table, chosen.arithmetic, flight.tracking)
     page = run_page(
         designed.bound.plant.name,
         designed.report,
@@ -67,6 +70,7 @@ def run(chosen: argparse.Namespace) -> int:
         image.sizes,
         flight.log,
         flight.tracking,
+        why,
         flight.counters,
         roll_off_trade(designed),
     )
@@ -74,8 +78,8 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.json:
         facts = {"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}
         facts |= {"design": design_facts(designed.report), "verification": json.loads(verification_text(verification))}
-        facts |= {"left": list(left(flight.tracking)), **tracking_facts(flight.tracking)}
-        facts |= {"quality": quality_facts(flight_quality(flight.tracking, [])), "sizes": asdict(image.sizes)}
+        facts |= {"left": list(left(flight.tracking)), "cause": why, **tracking_facts(flight.tracking)}
+        facts |= {"quality": quality_facts(flight_quality(flight.tracking)), "sizes": asdict(image.sizes)}
         print(json.dumps(facts))
         return 0
     print(console.table(design_rows(designed.report), design_heading(designed.report)))
@@ -86,6 +90,8 @@ def run(chosen: argparse.Namespace) -> int:
     print()
     if gone := left_sentence(flight.tracking):
         print(f"{gone}\n")
+    if why:
+        print(f"{quality_told(flight_quality(flight.tracking), why)}\n")
     print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")
     return 0

@@ -18,9 +18,10 @@ from sim.bind import BoundPlant
 from sim.halving import StepError
 from sim.tracking import left
 from twinlaw.cli import console, options
-from twinlaw.pages.quality import quality_sentence
+from twinlaw.pages.quality import quality_told
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, left_sentence, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.causes import cause
 from twinlaw.workflows.chain.designing import design_controller
 from twinlaw.workflows.chain.flying import fly_double, fly_host, halved_step, stirred
 from twinlaw.workflows.reading import load_bound
@@ -51,17 +52,24 @@ def run(chosen: argparse.Namespace) -> int:
     by_output = zip(bound.model.outputs, error.estimate.tolist(), strict=True)
     exact = [STEP_ERROR.look(name, value / bound.plant.sensors[name]) for name, value in by_output]
     quality = flight_quality(flight.tracking, exact)
+    why = cause(bound, table, chosen.arithmetic, flight.tracking) if generated else ""
     path = chosen.out / "simulation.csv"
     save_log(path, flight.log)
     gone = left(flight.tracking)
     if chosen.json:
-        facts = {"log": str(path), "table_digest": table.digest, "left": list(gone), **_error_facts(bound, error)}
+        facts = {
+            "log": str(path),
+            "table_digest": table.digest,
+            "left": list(gone),
+            "cause": why,
+            **_error_facts(bound, error),
+        }
         print(json.dumps(facts | tracking_facts(flight.tracking) | {"quality": quality_facts(quality)}))
     else:
         if gone:
             print(f"{left_sentence(flight.tracking)}\n")
         print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
-        print(f"\n{_error_told(bound, error)}\n{quality_sentence(quality)}\n{path}")
+        print(f"\n{_error_told(bound, error)}\n{quality_told(quality, why)}\n{path}")
     return 0
 
 

@@ -17,7 +17,7 @@ from sim.tracking import Tracking
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.plots import BLUE, GREEN, ORANGE, RED, Curve, Panel, stack
-from twinlaw.pages.quality import quality_section, quality_sentence
+from twinlaw.pages.quality import quality_section, quality_told
 from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design_page import design_sections
 from twinlaw.pages.run.roll_off import roll_off_section
@@ -49,10 +49,11 @@ def run_page(
     sizes: ImageSizes,
     log: RunLog,
     tracking: Sequence[Tracking],
+    cause: str,
     counters: Mapping[str, int],
     trade: Sequence[TradePoint],
 ) -> Page:
-    """The whole page: the flight of the image, its verification, and the design."""
+    """The whole page: the flight of the image, its verification, and the design; `cause` is why it is not green, "" where it is."""
     failures = verification.failures
     quality = flight_quality(tracking, [flag(text, Colour.RED) for text in failures])
     verdict = "Every check holds, and the firmware image has flown." if not failures else "; ".join(failures)
@@ -60,7 +61,7 @@ def run_page(
         title=f"{plant}: from its equations to a flight of the firmware",
         verdict=verdict,
         colour=quality.colour,
-        why=quality_sentence(quality),
+        why=quality_told(quality, cause),
         facts=(("Controller table", verification.table_digest),),
         sections=(
             _flight(log, report.loops, tracking, counters),

@@ -40,9 +40,9 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             str(entry.holds),
             f"{100 * entry.overshoot:.1f} %",
             settling_text(entry.settling_s),
-            _told(entry, entry.steady_error_rad, 3),
-            _told(entry, entry.mean_error_rad),
-            _told(entry, entry.push_rad) if len(tracking) > 1 else "no other loop",
+            error_told(entry, entry.steady_error_rad, 3),
+            error_told(entry, entry.mean_error_rad),
+            error_told(entry, entry.push_rad) if len(tracking) > 1 else "no other loop",
             entry.input,
             f"{small(entry.activity.travel_V_s)} {unit_of(entry.input)}/s",
             f"{entry.activity.reversals_1_s:.1f} /s",
@@ -73,7 +73,7 @@ def tracking_looks(entry: Tracking) -> tuple[Look, ...]:
     )
 
 
-def _told(entry: Tracking, value: float, digits: int = 2) -> str:
+def error_told(entry: Tracking, value: float, digits: int = 2) -> str:
     """An error as a person reads it: an angle's in degrees, anything else's in its unit, 0 where it is but rounding of the steps."""
     if entry.is_angle:
         return f"{math.degrees(value):.{digits}f} deg"

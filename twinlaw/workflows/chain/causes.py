@@ -1,0 +1,46 @@
+"""Why a flight of the generated law is not green: its arithmetic, or the law itself, by flying the same law otherwise."""
+
+from collections.abc import Sequence
+
+from records.errors import BadInput
+from records.law_table import FlownTable
+from records.quality import RANK, Colour
+from sim.bind import BoundPlant
+from sim.tracking import Tracking
+from twinlaw.pages.run.tracking import error_told, flight_quality
+from twinlaw.workflows.chain.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.flying import fly_double, fly_host
+
+LOST = "what the input moves by in a sample is lost in {arithmetic}'s last digits. Choose faster poles or a longer sample_period_s"
+AS_ITSELF = (
+    "it is the law, not its arithmetic. Choose other poles, another prefilter_time_constant_s or other references"
+)
+
+
+def cause(bound: BoundPlant, table: FlownTable, arithmetic: str, flown: Sequence[Tracking]) -> str:
+    """One sentence on what the same flight in double precision, and with another arithmetic, comes to; "" of a green flight."""
+    if (colour := _colour(flown)) is Colour.GREEN:
+        return ""
+    exact = fly_double(bound, table).tracking
+    ends = f"At rest it is off by {_off(flown)}; in double precision the same law is {_colour(exact)}, off by {_off(exact)}"
+    if RANK[_colour(exact)] >= RANK[colour]:
+        return f"{ends}: {AS_ITSELF}."
+    better = [name for name in ARITHMETICS if name != arithmetic and _is_better(bound, table, name, colour)]
+    also = f", or --arithmetic {better[0]}, in which it flies better" if better else ""
+    return f"{ends}: {LOST.format(arithmetic=arithmetic)}{also}."
+
+
+def _colour(flown: Sequence[Tracking]) -> Colour:
+    return flight_quality(flown).colour
+
+
+def _off(flown: Sequence[Tracking]) -> str:
+    return " and ".join(f"{error_told(entry, entry.steady_error_rad, 3)} ({entry.output})" for entry in flown)
+
+
+def _is_better(bound: BoundPlant, table: FlownTable, arithmetic: str, colour: Colour) -> bool:
+    """Whether the law flies better in an arithmetic; one that its controller does not have, or that cannot hold its numbers, is not."""
+    try:
+        return RANK[_colour(fly_host(bound, table, arithmetic).tracking)] < RANK[colour]
+    except BadInput:
+        return False
