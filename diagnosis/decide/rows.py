@@ -131,7 +131,7 @@ def rows_in_doubt(case: Case, found: FittedHypothesis, notes: Sequence[Note]) ->
         return tuple(notes)
     asked, model = Asked(short, usual), case.library.bound.model
     slips = (*asked.commands, *_one_column(len(model.inputs), len(model.outputs)))
-    gain = max(thread_map(asked.promised, slips))
+    gain = max(thread_map(asked.promised, slips), default=-np.inf)
     return tuple(note for note in notes if is_told(gain) or note.kind not in OTHER_ROWS)
 
 
@@ -164,9 +164,9 @@ class Asked:
 
     @property
     def commands(self) -> tuple[Misplaced, ...]:
-        """All inputs a row late and early."""
+        """All inputs a row late and early; of a plant without an input nothing can be moved so."""
         every = tuple(range(len(self.case.library.bound.model.inputs)))
-        return Misplaced(every, 1), Misplaced(every, -1)
+        return (Misplaced(every, 1), Misplaced(every, -1)) if every else ()
 
 
 def misplaced(asked: Asked) -> tuple[Moved | None, tuple[float, ...]]:
@@ -193,9 +193,9 @@ def misplaced(asked: Asked) -> tuple[Moved | None, tuple[float, ...]]:
 
 def _unseen(commands: Sequence[float]) -> tuple[Note, ...]:
     """That the logs do not tell in which rows the commands stand, where a row more or less would not show."""
-    up, down = commands
-    if is_told(-max(commands)):
+    if not commands or is_told(-max(commands)):
         return ()
+    up, down = commands
     said = (
         f"a shift of one row cannot be seen in these logs: with the commands one row up the plant follows {_better(up)}, "
         f"one row down {_better(down)}; {float(decisions.COLUMNS_TOLD):.0f} nats would tell"

@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from diagnosis import decisions
+from diagnosis.decide import rows
 from diagnosis.decide.rows import EARLY, LATE, Misplaced, demand_rows, most_by_an_effect, rows_in_doubt
 from diagnosis.fit.evidence import as_fitted
 from diagnosis.fit.gauss_newton import fit
@@ -158,3 +161,14 @@ def test_of_a_move_that_an_effect_explains_better_nothing_is_said() -> None:
         told(effect_library(arm()), logged(arm_log(seed=7), early), ways)
     coarse = arm_log({"theta_sensor.quantization": {"q": 0.0023}}, seed=7)
     assert told(effect_library(arm()), logged(coarse, early), ways) == []
+
+
+def test_of_a_plant_without_an_input_nothing_is_said_of_its_commands(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Truth: a free swing has one column, its angle, and nothing beside which that could stand late."""
+    swing: Any = SimpleNamespace(bound=SimpleNamespace(model=SimpleNamespace(inputs=(), outputs={"theta_rad": None})))
+    case: Any = SimpleNamespace(library=swing)
+    usual: Any = SimpleNamespace(hypothesis=None)
+    monkeypatch.setattr(rows, "looked_at", lambda case: case)
+    monkeypatch.setattr(rows, "settled_or_none", lambda *_: usual)
+    monkeypatch.setattr(rows, "with_usual_forces", lambda *_: usual)
+    assert demand_rows(case, usual, "the log") == ()
