@@ -16,6 +16,7 @@ from codegen.law import generate_law
 from design.law import FloatLaw
 from identification.proof import bench as fit_bench
 from identification.proof.bench import FitRow
+from records.errors import BadInput
 from records.table import ControllerTable
 from rig.emulator.bench import Speed
 from rig.emulator.board import EmulatedBoard
@@ -25,8 +26,8 @@ from rig.programming.image import build_firmware
 from sim.bench import comparison
 from sim.bench.comparison import BenchRow, StepAccuracy
 from sim.bench.peak import ProcessorShare
+from sim.kernel.law import is_kernel_s
 from twinlaw.cli import console, options
-from twinlaw.workflows.chain.building import demand_helicopter_loops
 from twinlaw.workflows.chain.designing import design_controller
 
 BOARD_STEPS = 20_000
@@ -45,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Measure and print."""
     designed = design_controller(chosen.plant)
-    demand_helicopter_loops(designed.table, "the tools that it compares with")
+    _demand_kernel_s(designed.table)
     with console.stage("flying by every tool"):
         rows, share = comparison.run(designed.bound, designed.table, lambda: FloatLaw(designed.table))
     with console.stage("flying with finer steps"):
@@ -61,6 +62,16 @@ def run(chosen: argparse.Namespace) -> int:
         print("\n" + console.table([_fit_shown(row) for row in fits], FIT_HEADING))
         print("\n" + "\n".join(_told(rows, share, accuracy, board)))
     return 0
+
+
+def _demand_kernel_s(table: ControllerTable) -> None:
+    """Raise BadInput for a table that the tools beside which the speed is measured cannot fly."""
+    if not is_kernel_s(table):
+        each = zip(table.loops, table.axes, strict=True)
+        got = f"loops of {', '.join(f'{loop.axis} ({axis.order} states)' for loop, axis in each)}"
+        expected = "a helicopter's, elevation and azimuth of 3 states each: the other tools fly that alone"
+        remedy = "leave --plant out; `verify` tells how many cycles a step of this plant's law takes"
+        raise BadInput("bench", f"plant {table.plant!r}", got, expected, remedy)
 
 
 def _board_speed(table: ControllerTable, arithmetic: str) -> Speed:

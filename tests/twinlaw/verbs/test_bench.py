@@ -1,13 +1,17 @@
 """The bench verb: what it tells, never how fast."""
 
 import json
+import re
+from types import SimpleNamespace
 
 import pytest
 
 from identification.proof import bench as fit_bench
+from records.loops import LOOPS, Loop
 from sim.bench import comparison, compiled_peers, peak
 from tests.angles import few_angles
 from tests.docs.json_page import is_as_documented
+from tests.plants import stated_table
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb
 
@@ -74,3 +78,23 @@ def test_it_tells_a_person_and_a_program_ratios_errors_speeds_and_how_to_install
         "SciPy least_squares",
     }
     assert said["emulated_board"]["instructions_per_s"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("plant", "loops"),
+    [("ce150_velagic", "elevation (4 states), azimuth (4 states)"), ("dc_motor", "shaft (3 states)")],
+)
+def test_a_plant_that_no_other_tool_flies_is_refused_by_its_loops(plant, loops, capsys, monkeypatch):
+    table = stated_table("ce150")
+    orders = [int(n) for n in re.findall(r"\((\d)", loops)]
+    names = re.findall(r"(\w+) \(", loops)
+    axes = [SimpleNamespace(order=order) for order in orders]
+    own = [Loop(name, f"{name}_rad", f"{name}_V", name) for name in names]
+    told = SimpleNamespace(
+        plant=plant, loops=LOOPS if plant == "ce150_velagic" else own, axes=axes, schedule=table.schedule
+    )
+    monkeypatch.setattr(verb, "design_controller", lambda _: SimpleNamespace(table=told))
+    assert main(["bench"]) == 2
+    said = capsys.readouterr().err
+    assert f"plant {plant!r}: bench: got loops of {loops}" in said
+    assert "leave --plant out" in said

@@ -10,10 +10,8 @@ from codegen.protocol_source import protocol_source
 from codegen.traceability.a2l import ImageMap, a2l_text, under
 from controllers import loading
 from records.board import STM32G071, Board
-from records.errors import BadInput
 from records.files import write_together
 from records.law_table import FlownTable
-from records.loops import LOOPS
 from records.protocol import protocol_of
 from records.table import ControllerTable
 from rig.programming.image import FirmwareImage, build_firmware
@@ -35,15 +33,6 @@ def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mappin
 def _protocol(table: FlownTable) -> Mapping[str, str]:
     """The line's texts, which carry what the table's loops say."""
     return protocol_source(protocol_of(table.loops))
-
-
-def demand_helicopter_loops(table: FlownTable, what: str) -> None:
-    """Raise BadInput for a table of other loops than the helicopter's; `what` is what was asked for."""
-    if table.loops != LOOPS:
-        names = ", ".join(loop.axis for loop in table.loops)
-        expected = f"elevation and azimuth: {what} are of the helicopter's two loops"
-        remedy = "give such a plant; `design`, `generate`, `verify`, `simulate` and `sweep` take this table"
-        raise BadInput(f"loops of {what}", f"controller table {table.digest[:16]}", names, expected, remedy)
 
 
 def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix: str, kind: str | None) -> list[Path]:
