@@ -241,19 +241,39 @@ def _stranger(model: Model, what: str, words: tuple[str, ...], symbol: sympy.Sym
     return Slip((str(symbol), *words), what, f"the unknown name {symbol}", f"one of {listed(declared)}", remedy)
 
 
+def _positions(model: Model, equations: Equations) -> Iterator[Slip]:
+    """A position moves by its axis' velocity, whatever else it moves by."""
+    for axis in model.axes:
+        rate = model.rates.get(axis.position)
+        if rate is not None and axis.velocity not in sympy.sympify(rate).free_symbols:
+            got = f"{shown(rate)}, without the velocity {axis.velocity} of axis {axis.name!r}"
+            expected = "that velocity, or it against another part's"
+            remedy = f"write rates={{..: {axis.velocity}}}, or give the axis None for its position"
+            yield Slip(("rates",), f"rate of {axis.position}", got, expected, remedy)
+
+
 def _functions(model: Model, equations: Equations) -> Iterator[Slip]:
-    """Every function is one that the kernel's C has."""
+    """Every expression is a number, and every function one that the kernel's C has."""
     for what, words, expression in _expressions(model):
-        try:
-            text = c_text(sympy.sympify(expression))
-        except Exception as error:  # whatever SymPy cannot print
-            text = f"Not supported: {' '.join(str(error).split())}"
-        if "Not supported" in text:
-            got = f"{shown(expression)} ({text.removeprefix('Not supported: ')[:120]})"
+        whole = sympy.sympify(expression)
+        unknown = _without_text(whole)
+        if whole.has(sympy.nan, sympy.zoo, sympy.I):
+            yield Slip(words, what, shown(expression), "a real number everywhere", "look for a division by 0")
+        elif unknown is not None:
+            got = f"{shown(expression)}, with {shown(unknown)}"
             expected = "sums, products, powers, sin, cos, tan and their inverses, exp, log, Abs, sign, Min, Max, Piecewise and the like"
             yield Slip(words, what, got, expected, "write it with these")
-        if sympy.sympify(expression).has(sympy.nan, sympy.zoo, sympy.I):
-            yield Slip(words, what, shown(expression), "a real number everywhere", "look for a division by 0")
+
+
+def _without_text(expression: sympy.Basic) -> sympy.Basic | None:
+    """The innermost part of an expression that the kernel's C has no text for; None where it has one for all."""
+    try:
+        if "Not supported" not in c_text(expression):
+            return None
+    except Exception:  # whatever SymPy cannot print
+        pass
+    parts = (_without_text(part) for part in expression.args if isinstance(part, sympy.Expr))
+    return next((part for part in parts if part is not None), expression)
 
 
 def _places(model: Model, equations: Equations) -> Iterator[Slip]:
@@ -261,4 +281,4 @@ def _places(model: Model, equations: Equations) -> Iterator[Slip]:
 
 
 Rule = Callable[[Model, Equations], Iterator[Slip]]
-RULES: tuple[Rule, ...] = (_kinds, _name, _names, _parameters, _coverage, _symbols, _functions, _places)
+RULES: tuple[Rule, ...] = (_kinds, _name, _names, _parameters, _coverage, _symbols, _positions, _functions, _places)

@@ -111,6 +111,8 @@ def _stopped(equations: Equations, error: BaseException) -> BadInput:
     told = " ".join(str(error).split())[:300]
     got = f"{type(error).__name__}: {told}" if told else type(error).__name__
     remedy = "mend that line"
+    if isinstance(error, KeyError):
+        remedy = "nothing of that name is declared: give it a ParameterSpec, or correct the name"
     if isinstance(error, ModuleNotFoundError):
         remedy = "the equations are this one file: what it imports must be installed, or stand in it"
     if isinstance(error, TypeError) and any(words in told for words in _NUMBER_WANTED):

@@ -80,9 +80,7 @@ class LanePrinter(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
     def _print_Function(self, expr: Any) -> str:
         name = expr.func.__name__
         if name not in _FUNCTIONS:
-            raise NotImplementedError(
-                f"the kernel's C has no function {name!r}; add it to sim/kernel/c/lane.h and sim/symbolic/printer.py"
-            )
+            raise NotImplementedError(f"the kernel's C has no function {name!r}")
         arguments = ", ".join(self._print(argument) for argument in expr.args)
         return f"lane_{'ceil' if name == 'ceiling' else name}({arguments})"
 

@@ -39,7 +39,7 @@ def edited(folder: Path, old: str, new: str) -> str:
 SLIPS = {
     "a slip of syntax": ("return Model(", "return Model((", "no Python"),
     "an unknown name": ('p["K"] * u', 'p["K"] * v', "NameError"),
-    "an unknown parameter": ('p["K"] * u', 'p["KK"] * u', "KeyError"),
+    "an unknown parameter": ('p["K"] * u', 'p["KK"] * u', "give it a ParameterSpec, or correct the name"),
     "an exception while the model is made": ('p["K"] * u', "1 / 0 * u", "ZeroDivisionError"),
     "a module that is not there": ("import sympy", "import sympy, my_constants", "must be installed, or stand in it"),
     "an end of the program": ("import sympy", "import sympy; raise SystemExit(3)", "SystemExit: 3"),
@@ -56,6 +56,9 @@ SLIPS = {
     "an output of an input": ('outputs={"theta_rad": theta}', 'outputs={"theta_rad": theta + u}', "take it out"),
     "a function that no C has": ("rates={theta: omega}", "rates={theta: sympy.zeta(omega)}", "write it with these"),
     "a function whose slope no C has": ("rates={theta: omega}", "rates={theta: sympy.gamma(2 + omega)}", "write it with these"),
+    "a function of nobody's": ("{theta: omega}", '{theta: omega * sympy.Function("f")(omega)}', ", with f(omega_rad_s), expected"),
+    "a quotient by nothing": ("{theta: omega}", "{theta: omega / sympy.Integer(0)}", "look for a division by 0"),
+    "a position that moves by itself": ("rates={theta: omega}", "rates={theta: 1.0}", "without the velocity omega_rad_s of axis 'arm'"),
     "an axis of another velocity": ('Axis("arm", theta, omega', 'Axis("arm", theta, u', "a state: "),
     "a limit that moves": ("input_limits={u: (-10, 10)}", "input_limits={u: (-10, theta)}", "limit of u_V"),
     "a letter that no C has": ('symbol("omega_rad_s")', 'symbol("ω_rad_s")', "expected letters a to z, digits and _"),
