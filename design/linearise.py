@@ -18,6 +18,8 @@ from sim.model import Model
 
 Array = NDArray[np.float64]
 
+GROWS_1_S = 1e-9  # a pole to the right of this grows: what rounding leaves of an integrator's 0 is a millionth of that, in a plant of 1/s
+
 
 def linearise(bound: BoundPlant, point: OperatingPoint) -> LinearPlant:
     """A, B, C of eqs (17) and (18) at `point`, without Coulomb friction: sgn has no slope at rest."""
@@ -55,10 +57,16 @@ def subsystem(bound: BoundPlant, linear: LinearPlant, loop: Loop, loops: Sequenc
 
 
 def of_loops(bound: BoundPlant, linear: LinearPlant, loops: Sequence[Loop]) -> LinearPlant:
-    """The whole plant with the loops' inputs and outputs alone, in their order."""
+    """The whole plant with the loops' inputs and outputs alone, in their order, without states that none of these outputs shows.
+
+    Where a wheel stands whose speed is measured is nothing that its loop holds; a state that grows unseen stays.
+    """
     inputs, outputs = [symbol.name for symbol in bound.model.inputs], [str(name) for name in bound.model.outputs]
     columns, rows = [inputs.index(loop.input) for loop in loops], [outputs.index(loop.output) for loop in loops]
-    return LinearPlant(linear.A, linear.B[:, columns], linear.C[rows])
+    shown = _closure(linear.A.T != 0.0, np.any(linear.C[rows] != 0.0, axis=0))
+    unseen = linear.A[~shown][:, ~shown]
+    kept = np.flatnonzero(shown | (max(np.linalg.eigvals(unseen).real, default=0.0) > GROWS_1_S))
+    return LinearPlant(linear.A[kept][:, kept], linear.B[kept][:, columns], linear.C[rows][:, kept])
 
 
 def _held_states(model: Model, loop: Loop) -> set[Any]:

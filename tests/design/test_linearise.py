@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from design.linearise import linearise, subsystem
+from design.linear_plant import LinearPlant
+from design.linearise import linearise, of_loops, subsystem
 from records.loops import LOOPS, Loop
 from records.plant import load_plant
 from sim.bind import bind
 from sim.equilibrium import OperatingPoint, equilibrium
 from tests.design.helicopter import helicopter
-from tests.own_plants import TWO_HEATERS
+from tests.own_plants import RATE_ONLY, TWO_HEATERS
 
 
 def linear(psi_deg):
@@ -51,3 +52,15 @@ def test_what_another_loop_measures_is_held_where_nothing_moves(tmp_path):
         np.testing.assert_allclose(own.A, np.array([[-0.5 / 30.0]]))
         np.testing.assert_allclose(own.B, np.array([[1.0 / 30.0]]))
     assert len(subsystem(bound, whole, loops[0], loops[:1]).A) == 2
+
+
+@pytest.mark.parametrize(("hidden_1_s", "states"), [(0.0, 1), (-1.0, 1), (1.0, 2)])
+def test_what_no_output_shows_counts_only_where_it_grows(hidden_1_s, states, tmp_path):
+    # Truth: theta' = omega + hidden theta beside omega' = -2 omega + 5 u, of which omega alone is measured, does not act on omega.
+    bound = bind(load_plant(RATE_ONLY.write(tmp_path, "rate_only")))
+    whole = LinearPlant(np.array([[hidden_1_s, 1.0], [0.0, -2.0]]), np.array([[0.0], [5.0]]), np.array([[0.0, 1.0]]))
+    found = of_loops(bound, whole, (Loop("wheel", "omega_rad_s", "u_V", "omega"),))
+    assert found.A.shape == (states, states)
+    assert found.A[-1, -1] == -2.0
+    assert found.B[-1, 0] == 5.0
+    assert found.C[0, -1] == 1.0
