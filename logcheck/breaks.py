@@ -35,8 +35,11 @@ def gaps(t_s: Array) -> Rows:
 
 
 def break_findings(log: RunLog, name: str) -> Iterator[Found]:
-    """Notes on inputs that begin late, on stamps too coarse to tell rows apart, on rows out of order, on other recordings in the file, and
-    on stretches without rows, behind which the log goes on as another one."""
+    """Notes on a last row written in part, on inputs that begin late, on stamps too coarse to tell rows apart, on rows out of order, on
+    other recordings in the file, and on stretches without rows, behind which the log goes on as another one."""
+    if log.half_row:
+        end_s = float(log.t_s[-1])
+        yield Found(Finding("half_row", name, None, end_s, end_s, log.half_row.told, rows=1))
     for late in log.late_inputs:
         sentence = (
             f"{late.column} begins at {late.begins_s:.6g} s: {in_words(late.rows, 'row')} in front of it left out"

@@ -18,7 +18,8 @@ from records.logs.coarse_stamps import Spread, own_times
 from records.logs.restarts import Restart, counted_on, on_one_clock, restart_rows
 from records.logs.source import Source, parse_source, source_table
 from records.text import checks
-from records.text.log_csv import read_rows, rows_text
+from records.text.last_row import HalfRow
+from records.text.log_csv import read_whole_rows, rows_text
 from records.text.reading import read_toml
 
 SCHEMA = "run-log/1"
@@ -68,7 +69,8 @@ class RunLog:
     `arithmetic` in which its law computed: DOUBLE is a simulation's own, in which no firmware flew; None where nobody said.
     `source` the published recording that the log was imported from, None for a log of this project's own making; `restarts` are where
     another recording of the same file begins, whose times are counted on; `late_inputs` begin behind a recording's first row;
-    `disordered` are rows of the file that were left out, `spread` those whose stamps were too coarse to tell them apart.
+    `disordered` are rows of the file that were left out, `spread` those whose stamps were too coarse to tell them apart, `half_row` the
+    last one where it was written in part.
     """
 
     columns: LogColumns
@@ -87,6 +89,7 @@ class RunLog:
     late_inputs: tuple[LateInput, ...] = ()
     disordered: Disordered | None = None
     spread: Spread | None = None
+    half_row: HalfRow | None = None
 
     def column(self, name: str) -> Array:
         """The column called `name`, shape (n,); raises KeyError for one that is not there."""
@@ -165,14 +168,14 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are, and times that begin again count on.
 
     Rows in front of an input's first number are left out, as nobody knows what moved the plant there, and a few whose time does not
-    rise; samples of one stamp get times of their own where the number of rows tells them. Raises BadInput naming file, line
-    and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated row, a number that is none, time
-    that does not increase, an input that is not finite, a time in another unit.
+    rise, and a last row that was written in part; samples of one stamp get times of their own where the number of rows tells them.
+    Raises BadInput naming file, line and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated
+    row, a number that is none, time that does not increase, an input that is not finite, a time in another unit.
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = _sidecar(path)
     flown = _check_sidecar(sidecar, str(sidecar_path), columns)
-    names, rows = read_rows(path, lambda header: _check_columns(header, str(path), columns))
+    names, rows, half_row = read_whole_rows(path, lambda header: _check_columns(header, str(path), columns))
     data = {name: rows[:, index] for index, name in enumerate(names)}
     begins = restart_rows(data["t_s"])
     data["t_s"], restarts = on_one_clock(data["t_s"])
@@ -204,6 +207,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         late_inputs=late_inputs,
         disordered=disordered,
         spread=spread,
+        half_row=half_row,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from records.text.last_row import HalfRow, without_half_row
 from records.text.reading import read_text
 
 Array = NDArray[np.float64]
@@ -22,29 +23,45 @@ def rows_text(names: Sequence[str], columns: Sequence[Array], seq: NDArray[np.in
     return "\n".join(lines) + "\n"
 
 
-def read_rows(
-    path: Path, check_header: Callable[[tuple[str, ...]], None] | None = None
-) -> tuple[tuple[str, ...], Array]:
+def read_rows(path: Path) -> tuple[tuple[str, ...], Array]:
     """Header and numbers (rows, columns) of a CSV file; an empty cell reads as NaN. Raises BadInput naming the line.
 
-    `check_header` sees the header before any row is read: what is no log at all is named as that, not by its first row. A header that
-    stands again, where files were laid one behind the other, is passed over.
+    A header that stands again, where files were laid one behind the other, is passed over.
     """
+    names, body = _header_and_body(path)
+    return names, _numbers(body, names, path)
+
+
+def read_whole_rows(
+    path: Path, check_header: Callable[[tuple[str, ...]], None]
+) -> tuple[tuple[str, ...], Array, HalfRow | None]:
+    """The same without a last row that was written in part, and that one.
+
+    `check_header` sees the header before any row is read: what is no log at all is named as that, not by its first row.
+    """
+    names, body = _header_and_body(path)
+    check_header(names)
+    body, half = without_half_row(body, len(names))
+    return names, _numbers(body, names, path), half
+
+
+def _header_and_body(path: Path) -> tuple[tuple[str, ...], str]:
     text = read_text(path, "run log")
     header, _, body = text.partition("\n")
-    names = tuple(name.strip() for name in header.split(","))
     if not header.strip() or not body.strip():
         got = "an empty file" if not header.strip() else "a header only"
         raise BadInput("run log", str(path), got, "a header and rows of numbers", "record at least one sample")
-    if check_header is not None:
-        check_header(names)
+    return tuple(name.strip() for name in header.split(",")), body
+
+
+def _numbers(body: str, names: tuple[str, ...], path: Path) -> Array:
     try:
         rows = np.loadtxt(io.StringIO(body), delimiter=",", ndmin=2, comments=None)
     except ValueError:
-        return names, _slow_rows(body, names, path)
+        return _slow_rows(body, names, path)
     if rows.shape[1] != len(names):
         raise _row_length(path, 2, rows.shape[1], len(names))
-    return names, rows
+    return rows
 
 
 def _slow_rows(body: str, names: tuple[str, ...], path: Path) -> Array:

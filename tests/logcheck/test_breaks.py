@@ -110,3 +110,15 @@ def test_a_clock_that_was_set_back_bears_no_stamps_coarser_than_the_rows(tmp_pat
     assert read.spread is None
     assert read.disordered is not None
     assert read.disordered.rows == 30
+
+
+def test_a_last_row_that_was_written_in_part_is_told(tmp_path: Path) -> None:
+    """Truth: the supply failed within the last row, which had three of its five cells."""
+    log = log_of()
+    save_log(tmp_path / "a.csv", log)
+    text = (tmp_path / "a.csv").read_text()
+    (tmp_path / "a.csv").write_text(text.rstrip("\n").rsplit(",", 2)[0])
+    read = load_log(tmp_path / "a.csv", log.columns)
+    assert len(read.t_s) == len(log.t_s) - 1
+    (finding,) = [entry for entry in examine([read], PLANT, names=["a"]).findings if entry.kind == "half_row"]
+    assert "line 2001, the last" in finding.sentence

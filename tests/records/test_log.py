@@ -104,8 +104,10 @@ def test_times_in_another_unit_are_refused_wherever_a_log_is_read(files, period,
             "column 'altitude_m': got an unknown column",
         ),
         (HEADER.replace("phi_rad", "phi_rad,phi_rad") + "0,5,1,0,0,7\n", "header: got a column twice"),
-        (HEADER + ROWS + "0.02,5.0,1.8\n", r"line 4: row: got 3 cells, expected 5"),
+        (HEADER + ROWS + "0.02,5.0,1.8\n" + "0.03,5.0,1.8,0,0\n", r"line 4: row: got 3 cells, expected 5"),
         (HEADER + "0,5\n0.01,5\n", r"line 2: row: got 2 cells, expected 5"),
+        (HEADER + ROWS + "0.02,5.0,1.8,0,0,0", r"line 4: row: got 6 cells, expected 5"),
+        (HEADER + "0,5", r"line 2: row: got 2 cells, expected 5"),
         (HEADER + ROWS + "0.02,5.0,up,0,0\n", r"line 4: number: got 'up'"),
         (HEADER + ROWS + "0.01,5,1,0,0\n", r"line 4: t_s: got 0\.01 after 0\.01, expected a time that increases"),
         (HEADER + ROWS + "0.005,5,1,0,0\n", r"line 4: t_s: got 0\.005 after 0\.01"),
@@ -127,6 +129,42 @@ def test_times_in_another_unit_are_refused_wherever_a_log_is_read(files, period,
 def test_a_wrong_csv_is_refused_with_its_line(files, csv, message):
     with pytest.raises(BadInput, match=message):
         files(csv=csv)
+
+
+@pytest.mark.parametrize(
+    "last",
+    [
+        "0.02,5.0,1.8\n",  # fewer cells
+        "0.02,5.0,1.8",
+        "0.02,5.0,1.8,-0.08,",  # no last cell
+        "0.02,5.0,1.8,-0.08,-",  # no number yet
+        "0.02,5.0,1.8,-0.08,1.5e",
+        "0.02,5.0,1.8,-0.08,0.00",  # a number, which may have been 0.002
+        "0.02,5.0,1.8,-0.08,1",  # or 1.002
+        "0.02,5.0,1.8,-0.08,0.0\0\0\0",  # what a file system leaves of a block that it did not write
+        "\0\0\0\0",
+    ],
+)
+def test_a_last_row_that_was_written_in_part_is_left_out_and_told(files, last):
+    log = files(csv=HEADER + ROWS + last)
+    np.testing.assert_array_equal(log.t_s, [0.0, 0.01])
+    assert log.half_row is not None
+    assert log.half_row.told.startswith("line 4, the last")
+
+
+@pytest.mark.parametrize(
+    ("before", "last"),
+    [
+        ("0.0,5,1,0,0.100\n0.01,5,1,0,0.101\n", "0.02,5,1,0,0.102"),  # as many decimals as all others
+        ("0.0,5,1,0,0.25\n0.01,5,1,0,0.5\n", "0.02,5,1,0,0.5"),  # the same as before
+        ("0.0,5,1,0,0.25\n0.01,5,1,0,0.5\n", "0.02,5,1,0,0.123\n"),  # a line end is behind it
+        ("", "0.02,5,1,0,0.123"),  # an only row
+    ],
+)
+def test_a_last_row_that_is_whole_stays(files, before, last):
+    log = files(csv=HEADER + before + last)
+    assert log.t_s[-1] == 0.02
+    assert log.half_row is None
 
 
 @pytest.mark.parametrize(

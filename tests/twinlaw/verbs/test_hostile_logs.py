@@ -55,7 +55,7 @@ BAD = {
     "UTF-16": (SOUND.encode("utf-16"), ["UTF-8"]),
     "empty": (b"", ["empty"]),
     "header only": (HEADER.encode() + b"\n", ["header"]),
-    "cut within a row": (SOUND.encode()[:9000].rsplit(b",", 2)[0], ["line", "truncated"]),
+    "a row cut in the middle": (f"{SOUND[:9000].rsplit(',', 2)[0]}\n{SOUND[9000:]}".encode(), ["line", "truncated"]),
     "semicolons and commas": (SOUND.replace(",", ";").replace(".", ",").encode(), ["column", "t_s"]),
     "columns of another rig": (
         text_of(sound_rows(), "t_s,u_M_V,u_T_V,theta_rad,psi_rad").encode(),
