@@ -58,7 +58,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if left_by is not None:
         perhaps = may_be_missing(judged) if left_by is Exit.TOO_UNSURE else ()
         return _nothing(seen, noisy, replace(material, notes=(*perhaps, *judged.notes)), left_by, judged.holdout)
-    return gap(seen, material, judged)
+    return _gap(seen, material, judged)
 
 
 def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:
@@ -99,7 +99,15 @@ def _gust(seen: Seen, material: Material, found: Draught) -> Result:
     seen = replace(seen, retuned=found.quiet, detection=replace(seen.detection, p=p))
     search = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.score_tests)
     seen, judged = _judged(seen, material, search, None)
-    return gap(seen, material, judged)
+    return _gap(seen, material, judged)
+
+
+def _gap(seen: Seen, material: Material, judged: Judged) -> Result:
+    """The answer where something is missing: rows of columns are in doubt no longer where it explains them. What is too small to be told
+    explains none."""
+    chosen, notes = judged.chosen, judged.notes
+    notes = rows_in_doubt(seen.case, chosen, notes) if chosen.effects else notes
+    return gap(seen, material, replace(judged, notes=notes))
 
 
 def _told(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit) -> Result:
@@ -173,7 +181,6 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     if holdout is not None:
         chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)
         seen, notes = seen.because(*rules), (*notes, *told)
-    notes = rows_in_doubt(seen.case, chosen, notes) if chosen.effects else notes
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
 
 

@@ -12,6 +12,7 @@ from diagnosis.baselines.residual_size import by_residual_size
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.detection import detect
 from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.diagnose import _gap
 from diagnosis.experiment.revealing import revealing_experiment
 from diagnosis.explain.notes import notes_of
 from diagnosis.explain.sentences import plain_sentence, sentence, sentences, unseen_effects
@@ -122,6 +123,16 @@ def test_an_answer_without_a_gap_names_its_exit_and_keeps_notes_rules_and_chance
     assert found.note_records[0] == kept
     assert found.notes[0] == "log: something"
     assert found.false_alarm_probability == seen().detection.p
+
+
+def test_a_doubt_about_rows_goes_where_an_effect_is_told_that_explains_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Truth: commands a row late, which a flexible mode explains half: told, or too small to be and not chosen."""
+    late, named = Note("columns_late", "u_V", {}, "perhaps late"), replace(plain_fit(), effects=("arm.flexible_mode",))
+    monkeypatch.setattr("diagnosis.diagnose.rows_in_doubt", lambda case, found, notes: ())
+    monkeypatch.setattr("diagnosis.diagnose.gap", lambda seen, material, judged: judged.notes)
+    for chosen, kept in ((named, ()), (plain_fit(), (late,))):
+        judged = Judged(object(), None, object(), chosen, None, (late,))  # type: ignore[arg-type]
+        assert _gap(seen(), Material([], [], [], []), judged) == kept
 
 
 def test_a_small_gap_that_nothing_explains_does_not_stand_and_keeps_its_chance() -> None:
