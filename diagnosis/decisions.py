@@ -359,6 +359,24 @@ COLUMNS_REFUSED = Limit(
     "the same, each column turned: 52 and more but for the four that gain 32 to 46; flights of the CE150 with commands late by a row that "
     "shows 65 to 6100, the yaw of a Quanser Aero as it is 45; inputs of another run 43, rows backwards 404",
 )
+CLOCK_SD = Limit(
+    0.03,
+    "share",
+    "a clock runs fast or slow: a crystal by 1e-5, a processor's own oscillator by 0.01, a loop that waits and then works by more",
+)
+CLOCK_MOST = Limit(
+    0.1,
+    "share",
+    "a clock runs fast or slow at most: what gains by more is a rig that is slower or faster than its file says",
+    "logs of a real arm gain 26 and 56 by 0.16 and 0.17",
+)
+CLOCK_TOLD = Limit(
+    50.0,
+    "nats",
+    "by which the plant must follow logs on another clock better: a rig that is slower or faster than its file says gains some too",
+    "flights of the CE150 with times 2 % to 5 % off 79 to 216; of 80 sealed cases, 32 of real rigs, one gains more than 31, "
+    "98 where an effect promises 512",
+)
 
 # What the improved plant does in a closed loop (validate)
 ASTRAY_S = Limit(1.0, "s", "so long in all a flight may be further from the log than the log's own range")

@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
+from diagnosis.decide.clock import clock_in_doubt
 from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
@@ -65,7 +66,7 @@ def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:
     """What is to be known of the columns of the logs to explain; raises BadInput where they are not what they are called."""
     nominal, where = seen.retuned.fit, "the logs to explain"
     rows = () if _in_their_rows(firmware) else _rows(seen, where)
-    return (*demand_wiring(seen.case, nominal, plain_fit, where), *rows)
+    return (*demand_wiring(seen.case, nominal, plain_fit, where), *rows, *clock_in_doubt(seen.case, nominal))
 
 
 def _rows(seen: Seen, where: str) -> tuple[Note, ...]:

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-# Kinds of notes that stand before any verdict: a column that may be another than it is called makes whatever follows doubtful.
-DOUBTS = ("columns_doubted", "columns_late", "columns_early")
+# Kinds of notes that stand before any verdict: a column that may be another than it is called makes whatever follows doubtful, and so does
+# a clock that may be wrong.
+DOUBTS = ("columns_doubted", "columns_late", "columns_early", "clock_doubted")
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis import decisions
+from diagnosis.decide.clock import clock_in_doubt
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.fit.nominal import plain_fit
@@ -49,7 +50,7 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
     busiest = make_case(library, [where_most_moves(log) for log in logs.values()], stated=bound)
     nominal = plain_fit(busiest)
     told = demand_wiring(busiest, nominal, plain_fit, where)
-    return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)))
+    return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)), *clock_in_doubt(busiest, nominal))
 
 
 def where_most_moves(log: RunLog) -> RunLog:
