@@ -30,7 +30,9 @@ def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
         [
             name
             for name, signal in signals.items()
-            if signal.values.ndim == 1 and is_time_name(name) and not _of_another_quantity(known(signal.unit))
+            if signal.values.ndim == 1
+            and (is_time_name(name) or is_time_name(signal.heading))
+            and not _of_another_quantity(known(signal.unit))
         ]
     )
     dated = [name for name, signal in signals.items() if signal.instants]

@@ -1,5 +1,6 @@
 """MATLAB's .mat files: vectors, whole workspaces, structures of any depth, Simulink's scopes and matrices; version 7.3 through h5py."""
 
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -20,7 +21,16 @@ from records.errors import BadInput
 
 _UNITS = ("unit", "units", "Unit", "Units")
 OCTAVE = b"# Created by Octave"  # in which it saves where it is not told otherwise
-_LABELS = ("label", "Name", "name")  # of a scope's signal, and of a timeseries
+_LABELS = (
+    "label",
+    "Label",
+    "Name",
+    "name",
+    "signalName",
+    "SignalName",
+)  # of a scope's signal, of a timeseries, and of dSPACE's
+
+_PATH = re.compile(r"^[^\[(]*/(?=[A-Za-z_]\w*$)")  # Model Root/Plant/psi_deg, but not psi [m/s]
 
 
 def read(path: Path, asked: TextLayout) -> Contents:
@@ -39,9 +49,11 @@ def read(path: Path, asked: TextLayout) -> Contents:
 
 
 def _label(name: str, texts: Mapping[str, str], signals: Mapping[str, object]) -> str:
-    """The label of a value; of a scope's signal that of its values alone, and not of what is said of them (`dimensions`)."""
+    """The label of a value, without the blocks above it that dSPACE writes before; of a scope's signal that of its values alone, and not of
+    what is said of them (`dimensions`)."""
     scope, _, field = name.rpartition(".")
-    return "" if field != "values" and f"{scope}.values" in signals else _beside(name, _LABELS, texts)
+    label = "" if field != "values" and f"{scope}.values" in signals else _beside(name, _LABELS, texts)
+    return _PATH.sub("", label)
 
 
 def _of_series(name: str, signals: Mapping[str, object]) -> str:

@@ -116,6 +116,11 @@ KINDS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "three dimensions": ({name: values.reshape(1, 1, -1) for name, values in RUN.items()}, {}),
     "time in ms": ({**RUN, "t_s": T_S * 1e3}, {"t_s": "t_s*0.001"}),
     "time_ms": ({**{name: RUN[name] for name in FOUR}, "time_ms": T_S * 1e3}, {}),
+    "dSPACE by its names": (
+        {"e": {"X": {"Name": "time", "Data": T_S}, "Y": [{"Name": f"Model Root/{name}", "Data": RUN[name]} for name in FOUR]}},
+        {},
+    ),
+    "cells of signals with names": ({"logs": [{"signalName": name, "time": T_S, "data": RUN[name]} for name in FOUR]}, {}),
     "a scope by its labels": ({"Scope": {"time": T_S, "signals": SCOPE, "blockName": "m/Scope"}}, {}),
     "a scope by its places": (
         {"Scope": {"time": T_S, "signals": SCOPE}},
