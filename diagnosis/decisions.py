@@ -359,6 +359,14 @@ COLUMNS_REFUSED = Limit(
     "the same, each column turned: 52 and more but for the four that gain 32 to 46; flights of the CE150 with commands late by a row that "
     "shows 65 to 6100, the yaw of a Quanser Aero as it is 45; inputs of another run 43, rows backwards 404",
 )
+RANGE_ENDS = Limit(
+    30.0,
+    "nats",
+    "by which readings at an output's extreme make what follows less likely than none: the sensor's range ends there; a play that stands "
+    "where its axis turns gains some",
+    "stands at extremes in 128 sealed cases, most of them with effects: 20 at most; five logs of an arm and a CE150 that were cut off 40 "
+    "and more",
+)
 CLOCK_SD = Limit(
     0.03,
     "share",

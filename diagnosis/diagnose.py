@@ -15,6 +15,7 @@ from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.idle import shares_of, without_idle
+from diagnosis.decide.range_ends import RangeEnd, range_ends
 from diagnosis.decide.rows import demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Explanations, Weighed, chosen_of, first_share, weigh
@@ -33,12 +34,15 @@ from diagnosis.seeing import alarmed, alone_of, beside_noise, detected_anew, see
 from diagnosis.standing import confirmed_by, is_noise, may_be_missing, of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
+from records.log import RunLog
 from records.reasons import Note
+from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
+    material = _within_ranges(bound, material)
     seen = seen_of(bound, material)
     material = replace(material, notes=(*material.notes, *_columns(seen, material.firmware)))
     noisy, seen = seen, beside_noise(seen)
@@ -60,6 +64,25 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         perhaps = may_be_missing(judged) if left_by is Exit.TOO_UNSURE else ()
         return _nothing(seen, noisy, replace(material, notes=(*perhaps, *judged.notes)), left_by, judged.holdout)
     return _gap(seen, material, judged)
+
+
+def _within_ranges(bound: BoundPlant, material: Material) -> Material:
+    """The material with nothing read where a sensor's range ends, as the logs to explain show."""
+    plain, split = without_effects(bound) if bound.effects else bound, len(material.logs)
+    names = material.names or [f"log {number + 1}" for number in range(split)]
+    ends = tuple(range_ends(plain, material.logs, material.used[:split], names))
+    if not ends:
+        return material
+    logs, holdout = ([_unread(log, ends) for log in some] for some in (material.logs, material.holdout))
+    return replace(material, logs=logs, holdout=holdout, notes=(*material.notes, *(end.note for end in ends)))
+
+
+def _unread(log: RunLog, ends: Sequence[RangeEnd]) -> RunLog:
+    """The log without the readings at the ends of ranges."""
+    y = log.y.copy()
+    for end in ends:
+        y[y[:, end.place] == end.level, end.place] = np.nan
+    return replace(log, y=y)
 
 
 def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:
