@@ -17,8 +17,6 @@ from records.errors import BadInput
 from records.log import RunLog
 from records.reasons import Note
 
-SHOWN = 3
-
 
 def gaps(t_s: Array) -> Rows:
     """Rows (n,) in front of which more samples are missing than a filter can bridge; none where rows come at random times."""
@@ -53,7 +51,7 @@ def break_findings(log: RunLog, name: str) -> Iterator[Found]:
         sentence = f"t_s: {in_words(count, 'row')} whose time does not rise, first at {first_s:.6g} s; left out"
         begins = behind_lost_times(log)
         if begins.any():
-            anew = " and ".join(f"{at_s:.6g} s" for at_s in log.t_s[begins][:SHOWN])
+            anew = " and ".join(f"{at_s:.6g} s" for at_s in log.t_s[begins][: thresholds.TIMES_SHOWN])
             sentence += f"; from {anew} on the log is used as another one"
         yield Found(Finding("disordered_rows", name, "t_s", first_s, first_s, sentence, rows=count), begins=begins)
     restarts = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts])
@@ -64,8 +62,8 @@ def break_findings(log: RunLog, name: str) -> Iterator[Found]:
     rows = np.flatnonzero(missing)
     if not rows.size:
         return
-    spans = [f"{log.t_s[row - 1]:.6g} s to {log.t_s[row]:.6g} s" for row in rows[:SHOWN]]
-    more = f" and in {len(rows) - SHOWN} more" if len(rows) > SHOWN else ""
+    spans = [f"{log.t_s[row - 1]:.6g} s to {log.t_s[row]:.6g} s" for row in rows[: thresholds.TIMES_SHOWN]]
+    more = f" and in {len(rows) - thresholds.TIMES_SHOWN} more" if len(rows) > thresholds.TIMES_SHOWN else ""
     sentence = f"no rows from {', '.join(spans)}{more}: what follows is used as another log"
     span = (float(log.t_s[rows[0] - 1]), float(log.t_s[rows[-1]]))
     yield Found(Finding("break", name, "t_s", *span, sentence), begins=missing)
@@ -76,9 +74,9 @@ def _restarted(log: RunLog, name: str, rows: NDArray[np.int64]) -> Found:
     begins[rows] = True
     told = [
         f"at {entry.own_s:g} s behind {log.t_s[row - 1]:.6g} s, which counts as {entry.at_s:g} s here"
-        for entry, row in zip(log.restarts[:SHOWN], rows.tolist(), strict=False)
+        for entry, row in zip(log.restarts[: thresholds.TIMES_SHOWN], rows.tolist(), strict=False)
     ]
-    more = f" and {len(rows) - SHOWN} times more" if len(rows) > SHOWN else ""
+    more = f" and {len(rows) - thresholds.TIMES_SHOWN} times more" if len(rows) > thresholds.TIMES_SHOWN else ""
     sentence = f"times begin again {', '.join(told)}{more}: several recordings in one file; each is used as another log"
     span = (float(log.t_s[rows[0]]), float(log.t_s[rows[-1]]))
     return Found(Finding("restart", name, "t_s", *span, sentence), begins=begins)

@@ -19,8 +19,6 @@ from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
 from records.log import RunLog
 from records.text.units import unit_of
 
-SHOWN = 3
-
 
 @dataclass(frozen=True)
 class _End:
@@ -102,8 +100,14 @@ def _evenness(read: _Read, first: int, last: int, least: float) -> float:
 
 
 def _in_words(end: _End, t_s: Array, values: Array, column: str) -> str:
-    spans = ", ".join(f"{t_s[first]:.6g} s to {t_s[last]:.6g} s" for first, last in end.stands[:SHOWN])
-    more = f" and {len(end.stands) - SHOWN} times more" if len(end.stands) > SHOWN else ""
+    spans = ", ".join(
+        f"{t_s[first]:.6g} s to {t_s[last]:.6g} s" for first, last in end.stands[: thresholds.TIMES_SHOWN]
+    )
+    more = (
+        f" and {len(end.stands) - thresholds.TIMES_SHOWN} times more"
+        if len(end.stands) > thresholds.TIMES_SHOWN
+        else ""
+    )
     share = float(np.mean(values == end.level))
     level = f"{end.level:.5g} {unit_of(column) or ''}".rstrip()
     return f"{column} never {end.how} {level}, where it stands in {share:.1%} of its rows, from {spans}{more}"

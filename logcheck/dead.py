@@ -17,8 +17,6 @@ from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
 from records.log import RunLog
 from records.text.units import unit_of
 
-SHOWN = 3
-
 
 @dataclass(frozen=True)
 class Stand:
@@ -69,8 +67,12 @@ def dead_findings(
             # The first reading of a stand into which nothing jumps is the last true one.
             unread[present[stand.first + (stand.jump_in == 0.0) : stand.last + 1]] = True
         span = (float(t_s[stands[0].first]), float(t_s[stands[-1].last]))
-        told = [_in_words(stand, t_s, values, column, step) for stand in stands[:SHOWN]]
-        more = f"; and so {len(stands) - SHOWN} times more, last until {span[1]:.6g} s" if len(stands) > SHOWN else ""
+        told = [_in_words(stand, t_s, values, column, step) for stand in stands[: thresholds.TIMES_SHOWN]]
+        more = (
+            f"; and so {len(stands) - thresholds.TIMES_SHOWN} times more, last until {span[1]:.6g} s"
+            if len(stands) > thresholds.TIMES_SHOWN
+            else ""
+        )
         sentence = f"{column} stands {'; '.join(told)}{more}: the sensor was not read; left out"
         other: Rows = np.zeros(len(log.t_s), bool)
         for first, last in ((present[stand.first], present[stand.last]) for stand in stands):

@@ -16,8 +16,6 @@ from logcheck.finding import Array, Finding, Found, Rows
 from records.log import RunLog
 from sim.columns import reference_name
 
-SHOWN = 3
-
 
 def seam_findings(
     log: RunLog, name: str, steps: Mapping[str, float], read_again: Rows, positions: Collection[str] = ()
@@ -173,8 +171,8 @@ def _found(
         moves, unit = np.abs(np.diff(log.column(column))), steps.get(column, 0.0)
         leaps.append(f"{column} by {amount(float(moves[first - 1]), column, unit)}")
         usual.append(amount(float(np.nanpercentile(moves, thresholds.USUAL_SPEED_PERCENT)), column, unit))
-    later = [f"{log.t_s[row]:.6g} s" for row in rows[1:SHOWN]]
-    more = f" and at {len(rows) - SHOWN} more instants" if len(rows) > SHOWN else ""
+    later = [f"{log.t_s[row]:.6g} s" for row in rows[1 : thresholds.TIMES_SHOWN]]
+    more = f" and at {len(rows) - thresholds.TIMES_SHOWN} more instants" if len(rows) > thresholds.TIMES_SHOWN else ""
     again = f", and so at {', '.join(later)}{more}" if later else ""
     who = "all outputs leap at once" if are_all else "the log leaps"
     sentence = (

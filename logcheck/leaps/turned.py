@@ -17,7 +17,6 @@ from records.log import RunLog
 from records.text.units import unit_of
 from sim.bind import BoundPlant
 
-SHOWN = 3
 SIDE = int(thresholds.SEAM_ROWS)
 
 
@@ -37,8 +36,8 @@ def turned_findings(log: RunLog, name: str, bound: BoundPlant, steps: Mapping[st
 
 
 def _found(log: RunLog, name: str, column: str, t_s: Array, values: Array, rows: NDArray[np.int64]) -> Found:
-    at = ", ".join(f"{t:.6g} s" for t in t_s[rows[:SHOWN]])
-    more = f" and {len(rows) - SHOWN} times more" if len(rows) > SHOWN else ""
+    at = ", ".join(f"{t:.6g} s" for t in t_s[rows[: thresholds.TIMES_SHOWN]])
+    more = f" and {len(rows) - thresholds.TIMES_SHOWN} times more" if len(rows) > thresholds.TIMES_SHOWN else ""
     leap = f"from {values[rows[0] - 1]:.4g} it leaps to {values[rows[0]]:.4g} {unit_of(column) or ''}".rstrip()
     sentence = f"the sign of {column} turns at {at}{more}: {leap} within a row, and goes on mirrored"
     remedy = f"turn the sign of {column} in front of it or behind it, or leave one part out"

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-SHOWN = 60
-OTHERS = 400  # rows before it that show how its last number is written
+CHARACTERS_SHOWN = 60
+ROWS_BEFORE = 400  # rows before it that show how its last number is written
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class HalfRow:
     @property
     def told(self) -> str:
         """What is to be said of it."""
-        shown = self.text if len(self.text) <= SHOWN else f"{self.text[:SHOWN]}..."
+        shown = self.text if len(self.text) <= CHARACTERS_SHOWN else f"{self.text[:CHARACTERS_SHOWN]}..."
         return f"line {self.line}, the last, was not written to its end, or may not have been: {shown!r}; left out"
 
 
@@ -41,7 +41,7 @@ def without_half_row(body: str, width: int) -> tuple[str, HalfRow | None]:
     before = [line for line in lines[:-1] if line.strip()]
     if not before:
         return body, None
-    last, others = lines[-1], [line.rpartition(",")[2].strip() for line in before[-OTHERS:]]
+    last, others = lines[-1], [line.rpartition(",")[2].strip() for line in before[-ROWS_BEFORE:]]
     cells = last.split(",")
     is_short = len(cells) < width
     is_open = not body.endswith("\n") and (not _is_number(cells[-1]) or may_be_cut(cells[-1].strip(), others))
