@@ -52,7 +52,7 @@ def clock_in_doubt(case: Case, nominal: Fit) -> tuple[Note, ...]:
         f"perhaps the log's clock runs {100.0 * off:.2g} % {'fast' if found.rate > 1.0 else 'slow'}: with its times divided by "
         f"{found.rate:.4f} the plant follows {gain:.0f} nats better"
     )
-    return (Note("clock_doubted", "t_s", {"rate": found.rate, "gain_nats": gain}, said),)
+    return (Note("clock_doubted", "t_s", {"clock_rate": found.rate, "gain_nats": gain}, said),)
 
 
 def _is_promised(case: Case, plain: Fit) -> bool:

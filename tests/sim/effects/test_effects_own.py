@@ -40,7 +40,7 @@ OTHER_THINGS: Mapping[str, tuple[str, set[str]]] = {
     "twinlaw/pages/diagnose/answers.py": ("a heading", {"phase"}),
     "twinlaw/pages/diagnose/why.py": ("a heading", {"limit"}),
     "twinlaw/pages/diagnose/words.py": ("what of a rig changes, as classes say it", {"gain", "limit", "torque"}),
-    "twinlaw/pages/run/design_page.py": ("rows of a controller's table", {"q"}),
+    "twinlaw/pages/run/design_page.py": ("rows of a controller's table", {"p", "q"}),
     "twinlaw/pages/run/design.py": ("headings", {"delay", "phase"}),
     "twinlaw/verbs/trace.py": ("a heading", {"difference"}),
     "twinlaw/watching/events.py": ("series of a picture", {"p", "r"}),
