@@ -44,7 +44,7 @@ def test_a_clock_that_runs_fast_or_slow_is_told_with_its_size(
     assert note.kind in DOUBTS
     assert note.numbers["clock_rate"] == pytest.approx(rate, abs=0.006)
     assert note.numbers["gain_nats"] > decisions.CLOCK_TOLD
-    assert f"runs {100 * abs(note.numbers['rate'] - 1.0):.2g} % {way}" in str(note.said)
+    assert f"runs {100 * abs(note.numbers['clock_rate'] - 1.0):.2g} % {way}" in str(note.said)
 
 
 @pytest.mark.parametrize("effects", [None, *([SPRING, {"azimuth.coulomb": {"b": 0.004}}] if SOAK else [SPRING])])
