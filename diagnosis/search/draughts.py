@@ -125,10 +125,9 @@ def _until_noise(
 
 
 def _reach(case: Case, fitted: FittedHypothesis, left: float) -> float:
-    """The evidence that noise with a memory could give a hypothesis, by what its innovations foretell beyond `left` nats: more than that
-    where it has none yet, for want of which its parameters bent."""
-    back = 1.0 if _has_memory(case, fitted) else float(decisions.PARAMETERS_BACK)
-    return fitted.evidence + back * max(_foretold(case, fitted) - left, 0.0)
+    """The evidence that noise with a memory could give a hypothesis, by what its innovations foretell beyond `left` nats: more than that,
+    as parameters come back which bent for want of it."""
+    return fitted.evidence + decisions.PARAMETERS_BACK * max(_foretold(case, fitted) - left, 0.0)
 
 
 def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> FittedHypothesis:
@@ -153,8 +152,10 @@ def _own_noise(
         if shared is None:
             continue
         found.append(shared)
-        promises = _foretold(case, shared) - left >= decisions.TAKEN_IN
-        if not promises or _reach(case, shared, left) < least:
+        promised = _foretold(case, shared) - left
+        # Under noise with a memory parameters have come back already.
+        back = 1.0 if _has_memory(case, shared) else decisions.PARAMETERS_BACK
+        if promised < decisions.TAKEN_IN or shared.evidence + back * promised < least:
             return max(found, key=lambda entry: entry.evidence)
     own = _with_memory(case, fitted)
     return max((*found, *([] if own is None else [own])), key=lambda entry: entry.evidence, default=None)
@@ -177,19 +178,17 @@ def _has_memory(case: Case, fitted: FittedHypothesis) -> bool:
 def _in_reach(
     case: Case, noisy: FittedHypothesis, others: Sequence[FittedHypothesis], least: float
 ) -> list[FittedHypothesis]:
-    """Those of the others, best first, that noise with a memory could bring to the `least` evidence: to first order under that of the
-    likeliest, `noisy`, or where that has none by what their innovations foretell. The best of them, and those that promise most."""
+    """Those of the others, best first, that noise with a memory could bring to the `least` evidence: under that of the likeliest, `noisy`,
+    to first order, or under one of their own, by what their innovations foretell. The best of them, and those that promise most by each."""
     left = _foretold(case, noisy)
 
-    def promised(entry: FittedHypothesis) -> float:
-        if _has_memory(case, noisy):
-            return entry.evidence + max(_further(case, entry, noisy), 0.0)
-        return _reach(case, entry, left)
+    def promised(entry: FittedHypothesis) -> tuple[float, float]:
+        return entry.evidence + _further(case, entry, noisy), _reach(case, entry, left)
 
     reach = dict(zip(others, thread_map(promised, others), strict=True))
-    near = [entry for entry in others if reach[entry] >= least]
-    furthest = sorted(near, key=lambda entry: -reach[entry])[: decisions.SETTLED_FITS]
-    return list(dict.fromkeys([*near[:1], *furthest]))
+    near = [entry for entry in others if max(reach[entry]) >= least]
+    furthest = [sorted(near, key=lambda entry: -reach[entry][by])[: decisions.SETTLED_FITS] for by in range(2)]
+    return list(dict.fromkeys([*near[:1], *furthest[0], *furthest[1]]))
 
 
 def _further(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> float:
