@@ -14,9 +14,9 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.draughts import with_noise_beside, with_noise_of
 from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink
 from diagnosis.search.fitting import Job, is_astray, keep_better, once_more, refined, rough
+from diagnosis.search.noise_beside import with_noise_beside, with_noise_of
 from diagnosis.search.own_events import with_own_events
 from jobs.thread_map import thread_map
 from records.reasons import Decision

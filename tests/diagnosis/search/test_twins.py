@@ -16,9 +16,9 @@ from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.search.beam import Search, beam_of, with_twins
-from diagnosis.search.draughts import _own_noise, hardly_told, with_noise_beside, with_noise_of
 from diagnosis.search.exchange import fit_twins, is_twin, twins_of
 from diagnosis.search.fitting import refined
+from diagnosis.search.noise_beside import _own_noise, hardly_told, with_noise_beside, with_noise_of
 from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
 
