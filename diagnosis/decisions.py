@@ -278,7 +278,7 @@ LONGEST_READING_S = Limit(5.0, "s", "errors alike for longer are an offset")
 PARAMETERS_BACK = Limit(
     3.0,
     "factor",
-    "of what innovations foretell that noise with a memory gains where there is none yet: parameters come back which bent for want of it",
+    "of what innovations foretell that noise with a memory gains where none was found beside a name yet: parameters come back which bent",
     "third rig, seed 344: right names gained 2.2 and 3.0 times as much",
 )
 NO_NOISE_SHARE = Limit(0.02, "shares of the least start", "a smaller noise with a memory is none")

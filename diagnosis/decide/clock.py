@@ -20,9 +20,11 @@ from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of
 from records.reasons import Note
 
-APART = 0.005  # of the rate, between which slopes are taken: five standard deviations of the best that a CE150 tells
-CLOSE = 0.0005  # of the rate: the search is at its end
-ROUNDS = 6
+RATE_STEP = (
+    0.005  # of the rate, between which slopes are taken: five standard deviations of the best that a CE150 tells
+)
+RATE_FOUND = 0.0005  # of the rate: the search is at its end
+MOST_CLOCKS = 6  # that are tried: a bound on the time, which no data set
 
 
 @dataclass(frozen=True)
@@ -64,9 +66,9 @@ def _search(case: Case, usual: Fit) -> Iterator[_Clock]:
     """Clocks, each of the rate that the one before promises, the first that of the logs."""
     clock = _slopes(case, usual, 1.0)
     yield clock
-    for _ in range(ROUNDS):
+    for _ in range(MOST_CLOCKS):
         end = settled_or_none(on_clock(case, clock.better), clock.end.hypothesis)
-        if end is None or abs(clock.better - clock.rate) < CLOSE:
+        if end is None or abs(clock.better - clock.rate) < RATE_FOUND:
             return
         clock = _slopes(case, end, clock.better)
         yield clock
@@ -75,11 +77,16 @@ def _search(case: Case, usual: Fit) -> Iterator[_Clock]:
 def _slopes(case: Case, end: Fit, rate: float) -> _Clock:
     """What two clocks beside promise, to first order in all that the plant's fit may then move."""
     here = end.log_posterior + end.promised - _cost(rate)
-    up, down = (_promised(case, end, rate + by) for by in (APART, -APART))
-    slope, bend = (up - down) / (2.0 * APART), (2.0 * here - up - down) / APART**2
+    up, down = (_promised(case, end, rate + by) for by in (RATE_STEP, -RATE_STEP))
+    slope, bend = (up - down) / (2.0 * RATE_STEP), (2.0 * here - up - down) / RATE_STEP**2
     if not np.isfinite(bend) or bend <= 0.0:
         return _Clock(rate, end, rate, 0.0)
-    return _Clock(rate, end, rate + float(np.clip(slope / bend, -0.1, 0.1)), slope**2 / (2.0 * bend))
+    return _Clock(
+        rate,
+        end,
+        rate + float(np.clip(slope / bend, -decisions.CLOCK_MOST, decisions.CLOCK_MOST)),
+        slope**2 / (2.0 * bend),
+    )
 
 
 def _promised(case: Case, end: Fit, rate: float) -> float:

@@ -29,7 +29,7 @@ from sim.bind import BoundPlant
 
 BEFORE_ROWS = 400  # to know the plant's state and numbers by
 BEHIND_ROWS = 30  # in which what an axis did unseen still shows
-LEAST_ROWS = 16  # of a stand: in fewer nothing goes far
+LEAST_STAND_ROWS = 16  # of a stand: in fewer nothing goes far
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
@@ -80,7 +80,7 @@ def _longest(logs: Sequence[RunLog], column: str, level: float) -> list[_Stand]:
         for number, log in enumerate(logs)
         for first, last in runs(log.column(column))
         if log.column(column)[first] == level
-        and last - first + 1 >= LEAST_ROWS
+        and last - first + 1 >= LEAST_STAND_ROWS
         and _is_far(log.column(column), first, last)
     ]
     return sorted(found, key=lambda stand: stand.first - stand.last)[: decisions.ASKED]
