@@ -9,22 +9,21 @@ from records.text import checks
 
 def read_poles(entries: Any, where: str) -> tuple[complex, ...]:
     """Poles in rad/s, real or [re, im]; raises BadInput unless they are two a state, stable and in conjugate pairs."""
-    most = 2 * ORDERS[-1]
-    if not isinstance(entries, list | tuple) or len(entries) not in range(2, most + 1, 2):
-        got = f"{len(entries)} poles" if isinstance(entries, list | tuple) else repr(entries)[:60]
-        expected = f"two poles for each state that the input moves and that moves the output, {most} at most"
-        raise BadInput(
-            "poles",
-            where,
-            got,
-            expected,
-            f"give plant and controller as many each; of more than {ORDERS[-1]} states leave the fastest out",
-        )
-    poles = tuple(_pole(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
+    listed = isinstance(entries, list | tuple)
+    poles = tuple(_pole(entry, f"{where}[{index}]") for index, entry in enumerate(entries)) if listed else ()
     for pole in poles:
         if pole.imag != 0.0 and poles.count(pole) != poles.count(pole.conjugate()):
             missing = f"its conjugate [{pole.real:g}, {-pole.imag:g}] as often"
             raise BadInput("poles", where, f"[{pole.real:g}, {pole.imag:g}] alone", missing, "write both of the pair")
+    most = 2 * ORDERS[-1]
+    if len(poles) not in range(2, most + 1, 2):
+        raise BadInput(
+            "poles",
+            where,
+            f"{len(poles)} poles" if listed else repr(entries)[:60],
+            f"two poles for each state that the input moves and that moves the output, {most} at most",
+            f"give plant and controller as many each; of more than {ORDERS[-1]} states leave the fastest out",
+        )
     return poles
 
 

@@ -79,6 +79,7 @@ BAD = [
     ({"azimuth": {"poles_rad_s": [-3, -4, -5, -6, -7, 0.0]}}, r"azimuth\.poles_rad_s\[5\].*outside the unit circle"),
     ({"azimuth": {"poles_rad_s": [-3, -4, -5, -6, [1, 2], [1, -2]]}}, r"poles_rad_s\[4\].*outside the unit circle"),
     ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, -7, PAIR[0]]}}, r"\[-2\.5, 1\.5\] alone.*\[-2\.5, -1\.5\]"),
+    ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, PAIR[0]]}}, r"\[-2\.5, 1\.5\] alone.*\[-2\.5, -1\.5\]"),
     ({"elevation": {"poles_rad_s": [-3, -4, -5, PAIR[0], PAIR[0], PAIR[1]]}}, r"alone.*conjugate.*as often"),
     ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, -7, [1, 2, 3]]}}, r"poles_rad_s\[5\].*3 entries.*2 entries"),
     ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, -7, "x"]}}, r"poles_rad_s\[5\].*finite number"),
