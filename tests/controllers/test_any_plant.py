@@ -41,7 +41,7 @@ PLANTS = ("aeroshield", "quanser_aero", "motor", "inverted_arm", "heater")
 # A PID a loop leaves quanser_aero's two, which push each other's axes, unstable together.
 DESIGNED = [(name, of) for of in PLANTS for name in NAMES if (name, of) != ("pid", "quanser_aero")]
 STEPS = 100_000 if SOAK else 5_000
-TARGET_STEPS = 2_000 if SOAK else 300
+TARGET_STEPS = 100_000 if SOAK else 300
 
 
 CHAIN = OwnPlant(

@@ -20,9 +20,7 @@ from verification.stimuli import standard_stimuli
 
 STEPS = 100_000 if SOAK else 5_000
 FIRST = 250 if SOAK else 40  # of the samples of a lane: a twin in Python takes as long for many lanes as for one
-TARGET_STEPS = (
-    2_000 if SOAK else 500
-)  # a quarter of a second of the emulated board a row; `twinlaw compare` steps a hundred thousand on it
+TARGET_STEPS = 100_000 if SOAK else 500  # a quarter of a second of the emulated board a row, in a soak six
 # Mean |error| on the hop: one step of 10 deg, one of 15 deg, in eight seconds. The PID's one set of gains is slow at every elevation.
 TRUTH_DEG = dict.fromkeys(ROWS, 1.6) | {"pid": 3.0}
 
