@@ -219,7 +219,9 @@ CLOSE_PAIR_SHARE = Limit(
     "what is further from the best is not worth a further effect, nor to be settled",
     DEVELOPMENT,
 )
-LEAST_GAIN = Limit(4.0, "nats", "a score test below is not worth a fit")
+LEAST_GAIN = Limit(
+    4.0, "nats", "a score test below is not worth a fit; beyond a size that loses as much larger ones are not tried"
+)
 COSTLY_EFFECTS = Count(14, "effects", "worth a costly score test beside others", DEVELOPMENT)
 SETTLED_FITS = Count(
     5, "hypotheses", "fitted once more to their end: one not at its end loses to one with an idle effect", DEVELOPMENT

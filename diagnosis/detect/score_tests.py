@@ -171,23 +171,36 @@ def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str])
 def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
     """Effects on the way of the signals, and limits: tried at each of their starts at full size."""
     effects = [case.library.effects[name] for name in names]
-    begun = thread_map(lambda effect: _whole_starts(case, linearisation, effect), effects)
-    starts = [(effect, values) for effect, found in zip(effects, begun, strict=True) for values in found]
-    return [
-        entry for entry in thread_map(lambda start: _tried(case, linearisation, *start), starts) if entry is not None
-    ]
+    begun = thread_map(lambda effect: _ways(case, linearisation, effect), effects)
+    ways = [(effect, way) for effect, found in zip(effects, begun, strict=True) for way in found]
+    return list(chain.from_iterable(thread_map(lambda way: _along(case, linearisation, *way), ways)))
 
 
-def _whole_starts(case: Case, linearisation: Linearisation, effect: Effect) -> list[Values]:
-    """Values to try of an effect without first order; sizes of a level, and steps with what they are like, are seen in the log."""
+def _along(case: Case, linearisation: Linearisation, effect: Effect, way: Sequence[Values]) -> list[ScoreTest]:
+    """The tries from the mildest on, down to one that loses: to first order the log likelihood is concave in a size, and beyond that all
+    lose more."""
+    found = list[ScoreTest]()
+    for values in way:
+        entry = _tried(case, linearisation, effect, values)
+        if entry is None:
+            continue
+        found.append(entry)
+        if entry.gain < -decisions.LEAST_GAIN:
+            break
+    return found
+
+
+def _ways(case: Case, linearisation: Linearisation, effect: Effect) -> list[list[Values]]:
+    """Values to try of an effect without first order, for each of its shapes those of its size, mildest first; one by one where its
+    likelihood is rough. Sizes of a level, and steps with what they are like, are seen in the log."""
     if effect.size.role is Role.STEP:
-        return _steps(case, linearisation, effect)
+        return [[values] for values in _steps(case, linearisation, effect)]
     levels = _levels(case, effect) if effect.size.role is Role.LEVEL else list(effect.size.starts)
-    return [
-        {**effect.absent, **shapes, effect.size.symbol: value}
-        for value in levels or [effect.size.reference]
-        for shapes in shape_starts(effect)
+    levels = sorted(levels or [effect.size.reference], key=lambda value: abs(value - (effect.size.zero or 0.0)))
+    ways = [
+        [{**effect.absent, **shapes, effect.size.symbol: value} for value in levels] for shapes in shape_starts(effect)
     ]
+    return [[values] for way in ways for values in way] if effect.holds_at_rest else ways
 
 
 def _levels(case: Case, effect: Effect) -> list[float]:

@@ -1,4 +1,4 @@
-"""Levels of a limit that are tried: where the command is most of the time, whatever its peaks."""
+"""Sizes that are tried at full size: levels of a limit where the command is most of the time, others from the mildest on."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,8 @@ import pytest
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.nominal import nominal_fit
-from tests.diagnosis.arm import arm_case, arm_log
+from sim.added_effects import library
+from tests.diagnosis.arm import arm, arm_case, arm_log
 
 LIMIT = {"input.saturation": {"limit": 1.9, "w": 0.05}}
 
@@ -19,3 +20,25 @@ def test_a_limit_is_seen_far_below_the_peaks_of_kicks() -> None:
     (seen,) = score_effects(case, linearised(case, nominal_fit(case)), ["input.saturation"])
     assert seen.gain > 30.0
     assert seen.values["limit"] == pytest.approx(1.9, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("name", "place"), [("theta_sensor.backlash", 0), ("input.backlash", 1), ("input.slew_limit", 0)]
+)
+def test_sizes_are_tried_from_the_mildest_on_until_they_lose(name: str, place: int) -> None:
+    # Truth: one of the sizes that are tried: the mildest play of all, the second of three, and the slowest of six limits of a rate, behind
+    # five that say next to nothing.
+    effect = library(arm())[name]
+    size = sorted(effect.size.starts)[place]
+    case = arm_case(arm_log({name: {effect.size.symbol: size}}))
+    (seen,) = score_effects(case, linearised(case, nominal_fit(case)), [name])
+    assert seen.values[effect.size.symbol] == size
+    assert seen.gain > 30.0
+
+
+def test_of_a_play_that_is_not_there_the_mildest_alone_is_tried() -> None:
+    # Truth: none; the severest play that is asked of would lose thousands of nats, so that no try of it must be what is told.
+    case = arm_case(arm_log({}))
+    (seen,) = score_effects(case, linearised(case, nominal_fit(case)), ["theta_sensor.backlash"])
+    assert seen.gain < 0.0
+    assert seen.values["width"] == min(library(arm())["theta_sensor.backlash"].size.starts)
