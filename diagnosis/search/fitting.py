@@ -78,22 +78,33 @@ def at_its_place(case: Case, begun: Hypothesis) -> FittedHypothesis | None:
 
 
 def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
-    """The fit with the process noise that then remains; what is rough and all else are fitted in turns, while a turn gains much."""
-    found = _refined_once(case, fitted.fit.hypothesis, fitted.effects)
-    turns = MOST_TURNS if any(_is_rough(case, name) for name in fitted.effects) else 0
-    for _ in range(turns):
-        again = None if found is None else _refined_once(case, found.hypothesis, fitted.effects)
-        if found is None or again is None or again.log_posterior < found.log_posterior + decisions.TAKEN_IN:
+    """The fit with the process noise that then remains; what is rough and all else are fitted in turns, until a turn moves all else
+    little: what is rough is as likely as it was then."""
+    start, effects = _under_own_noise(case, fitted.fit.hypothesis, fitted.effects), fitted.effects
+    coarse = [name for name in effects if _is_rough(case, name)]
+    if not coarse:
+        found = _refined_once(case, start, effects)
+        return None if found is None else as_fitted(case, found)
+    best: Fit | None = None
+    for _ in range(MOST_TURNS):
+        for name in coarse:
+            start = _polished(case, start, name, STEP_FINELY)
+        begun = fit(case, start, rounds=0)
+        found = None if begun is None else _refined_once(case, _under_own_noise(case, start, effects), effects)
+        best = _likelier(best, found)
+        if found is None or begun is None or found.log_posterior < begun.log_posterior + decisions.TAKEN_IN:
             break
-        found = again
-    return None if found is None else as_fitted(case, found)
+        start = found.hypothesis
+    return None if best is None else as_fitted(case, best)
 
 
-def _refined_once(case: Case, hypothesis: Hypothesis, effects: Sequence[str]) -> Fit | None:
-    """The noise that remains, then what is rough, then all else."""
-    start = with_jitter(case, coloured_noise_of(case, hypothesis), effects)
-    for name in effects:
-        start = _polished(case, start, name, STEP_FINELY) if _is_rough(case, name) else start
+def _under_own_noise(case: Case, hypothesis: Hypothesis, effects: Sequence[str]) -> Hypothesis:
+    """The same with the noise that remains, and the scatter of what comes late."""
+    return with_jitter(case, coloured_noise_of(case, hypothesis), effects)
+
+
+def _refined_once(case: Case, start: Hypothesis, effects: Sequence[str]) -> Fit | None:
+    """Frictions that hold, then all that has slopes."""
     for name in holding(case.library, effects):
         start = _likeliest(case, start, name, FRICTION_FACTORS)
     found = fit(case, start, rounds=REFINED_ROUNDS)
