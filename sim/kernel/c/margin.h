@@ -156,7 +156,8 @@ static double cubic_root(const cubic *g)
 static bool leave_zero(const moment *at, double noise, double *early, double *late, int axis, int event)
 {
     view then;
-    for (double trial = 0.5 * *late; trial > 1e-12 * *late; trial *= 0.5) {
+    const double least = 1e-12 * *late; /* of the whole stretch: `late` comes nearer with each trial */
+    for (double trial = 0.5 * *late; trial > least; trial *= 0.5) {
         if (margin_after(at, trial, axis, event, &then) > noise) {
             *early = trial;
             return true;
