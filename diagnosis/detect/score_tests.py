@@ -197,7 +197,7 @@ def _ways(case: Case, linearisation: Linearisation, effect: Effect) -> list[list
         return [[values] for values in _steps(case, linearisation, effect)]
     levels = _levels(case, effect) if effect.size.role is Role.LEVEL else list(effect.size.starts)
     levels = sorted(levels or [effect.size.reference], key=lambda value: abs(value - (effect.size.zero or 0.0)))
-    ways = [
+    ways: list[list[Values]] = [
         [{**effect.absent, **shapes, effect.size.symbol: value} for value in levels] for shapes in shape_starts(effect)
     ]
     return [[values] for way in ways for values in way] if effect.holds_at_rest else ways
