@@ -94,7 +94,8 @@ def load_plant(path: Path) -> Plant:
 
     Names, shapes and signs that a model demands are checked where the model is known (sim.bind), not here.
     """
-    missing = f"name yours with --plant, or one of {PLANTS}"
+    inside = path / OWN_NAME
+    missing = f"name the file in it, {inside}" if inside.is_file() else f"name yours with --plant, or one of {PLANTS}"
     content = read_toml(path, "plant file", missing)
     own = str(content.get("equations", "")).removesuffix(".py")
     return parse_plant(content, own if own and path.name == OWN_NAME else path.stem, str(path), path.parent)

@@ -124,6 +124,12 @@ def test_a_file_that_is_no_plant_is_refused(tmp_path, text, message):
         load_plant(path)
 
 
+def test_the_folder_of_a_plant_is_told_its_file(tmp_path):
+    (tmp_path / "plant.toml").write_text("")
+    with pytest.raises(BadInput, match=r"got Is a directory.*; name the file in it, .*plant\.toml"):
+        load_plant(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("one", "other"),
     [
