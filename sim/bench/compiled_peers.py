@@ -69,7 +69,7 @@ def _casadi(task: Task) -> Work | None:
 
 
 def _numba(task: Task) -> Work | None:
-    """Plant and law as scalar functions that numba compiles; states travel as tuples."""
+    """Plant and law as scalar functions that numba compiles; states travel as tuples, and no quotient is looked at for a divisor of 0."""
     numba = module("numba")
     if numba is None:
         return None
@@ -77,8 +77,10 @@ def _numba(task: Task) -> Work | None:
     class Ops:
         minimum, maximum = sympy.Min, sympy.Max
 
+    compile_ = numba.njit(error_model="numpy")  # an eighth faster than with Python's
+
     def compiled(arguments: Any, results: Any) -> Any:
-        return numba.njit(sympy.lambdify(arguments, tuple(results), modules="math", cse=True))
+        return compile_(sympy.lambdify(arguments, tuple(results), modules="math", cse=True))
 
     bound, piece = task.bound, task.piece
     x, own, k = bound.model.states, sympy.symbols(f"l:{2 * LAW_STATES}"), sympy.symbols(f"k:{len(bound.model.states)}")
@@ -88,7 +90,7 @@ def _numba(task: Task) -> Work | None:
     rates = compiled([*x, *bound.model.inputs], smooth_rates(bound))
     measured, h_s = compiled(x, _measured(task, sympy.floor, x)), task.period_s
 
-    @numba.njit
+    @compile_
     def fly(x, own, references):  # type: ignore[no-untyped-def]
         for k in range(len(references) - 1):
             result = law(references[k, 0], references[k, 1], *(measured(*x) + own))
