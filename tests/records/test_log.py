@@ -156,6 +156,7 @@ def test_a_last_row_that_was_written_in_part_is_left_out_and_told(files, last):
     ("before", "last"),
     [
         ("0.0,5,1,0,0.100\n0.01,5,1,0,0.101\n", "0.02,5,1,0,0.102"),  # as many decimals as all others
+        ("0.0,5,1,0,0.1\n0.01,5,1,0,0.101\n", "0.02,5,1,0,0.102"),  # as many as any
         ("0.0,5,1,0,0.25\n0.01,5,1,0,0.5\n", "0.02,5,1,0,0.5"),  # the same as before
         ("0.0,5,1,0,0.25\n0.01,5,1,0,0.5\n", "0.02,5,1,0,0.123\n"),  # a line end is behind it
         ("", "0.02,5,1,0,0.123"),  # an only row

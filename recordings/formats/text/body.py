@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from recordings.formats.text.cells import is_number, number
 from recordings.formats.text.layout import SAMPLE_LINES, Layout
 from recordings.formats.text.lines import Line
 from recordings.formats.text.splitting import split
 from recordings.signals import counted
+from records.text.last_row import ROWS_BEFORE, may_be_cut
 
 
 def without_headers(lines: Sequence[Line], layout: Layout) -> tuple[Sequence[Line], list[str]]:
@@ -73,13 +76,23 @@ def without_text_below(
 def without_cut_cell(
     lines: Sequence[Line], told: tuple[str, ...], layout: Layout
 ) -> tuple[Sequence[Line], tuple[str, ...]]:
-    """The rows of a file without a last line end: its last number may have lost digits, and has where all others have as many more."""
-    cells = [split(line.text, layout.separator)[-1] for line in lines[-1 - SAMPLE_LINES :]]
-    *others, last = (len(cell.partition(layout.decimal)[2]) for cell in cells)
-    if len(others) < 2 or len({*others}) > 1 or last >= others[0]:
+    """The rows of a file without a last line end, without the last where its last number may have lost digits: one that goes on from those
+    above stays, as of these logs no bit of a firmware is asked, unless all above have more decimals."""
+    *above, last = (split(line.text, layout.separator)[-1].strip() for line in lines[-1 - ROWS_BEFORE :])
+    varies = len({len(cell.partition(layout.decimal)[2]) for cell in above}) > 1
+    goes_on = varies and _goes_on([number(cell, layout.decimal) for cell in (*above, last)])
+    if goes_on or not may_be_cut(last, above, layout.decimal):
         return lines, told
-    said = f"line {lines[-1].number}, the last, ends within a number, as no line end is behind it, and is left out"
+    said = (
+        f"line {lines[-1].number}, the last, ends within a number, or may, as no line end is behind it, and is left out"
+    )
     return lines[:-1], (*told, said)
+
+
+def _goes_on(cells: Sequence[float | None]) -> bool:
+    """Whether the last number lies no farther from the one above than these do from one another."""
+    moves = np.abs(np.diff([np.nan if cell is None else cell for cell in cells]))
+    return bool(moves[-1] <= np.max(moves[:-1], initial=0.0, where=np.isfinite(moves[:-1])))
 
 
 def _stands_apart(lines: Sequence[Line], layout: Layout) -> bool:

@@ -249,6 +249,18 @@ def test_a_last_row_that_ends_within_a_number_is_left_out(cut: int, rows: int, t
     assert any("line 51, the last" in told for told in done.found) == (rows == 49)
 
 
+@pytest.mark.parametrize(("last", "rows"), [("0.6", 50), ("0", 49)])
+def test_a_last_number_of_fewer_decimals_stays_where_it_goes_on_from_those_above(
+    last: str, rows: int, tmp_path: Path
+) -> None:
+    """Truth: without a last line end, an azimuth printed without its last zeros, 0.0125 rad further in each row: up to 0.6 rad, or cut
+    short."""
+    azimuth = [f"{0.6 + 0.0125 * (place - 49):g}" for place in range(49)] + [last]
+    lines = [f"{row.rpartition(',')[0]},{cell}" for row, cell in zip(_rows(), azimuth, strict=True)]
+    (tmp_path / "run.csv").write_text(HEAD + "\n".join(lines))
+    assert len(imported_here(tmp_path / "run.csv", ColumnMapping()).log.t_s) == rows
+
+
 def test_zero_bytes_that_a_crash_left_between_rows_are_passed_over_and_a_row_that_they_cut_is_told(
     tmp_path: Path,
 ) -> None:
