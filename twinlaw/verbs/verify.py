@@ -70,8 +70,7 @@ def run(chosen: argparse.Namespace) -> int:
     print(text if chosen.json else console.table(verification_rows(verification)))
     if image is not None and not board.is_emulated and not chosen.json:
         print(f"- {board.chip}: its law ran on the core alone; cycles, peripherals and line are not emulated")
-    for _, lacks in recorded:
-        if lacks is not None and not chosen.json:
-            print(f"- {lacks}")
+    if not chosen.json:
+        console.notes([said for _, each in recorded for said in each])
     demand(verification)
     return 0

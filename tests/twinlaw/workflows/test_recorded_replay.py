@@ -17,13 +17,22 @@ from twinlaw.workflows.chain.verifying import recorded_replay
 def test_a_log_is_compared_and_what_explains_its_difference_is_said(tmp_path: Path) -> None:
     save_log(tmp_path / "own.csv", own())
     replay, said = recorded_replay(tmp_path / "own.csv", ce150_table(), plant())
-    assert (replay.sent is not None, said) == (True, None)
+    assert (replay.sent is not None, said) == (True, ())
     late = replace(own(), u=np.concatenate([own().u[:1], own().u[:-1]]))
     save_log(tmp_path / "late.csv", late)
     replay, said = recorded_replay(tmp_path / "late.csv", ce150_table(), plant())
     assert replay.sent is not None
-    assert said is not None
-    assert said.startswith("late.csv: the firmware sent its output one sample late")
+    assert said[0].startswith("late.csv: the firmware sent its output one sample late")
+
+
+def test_a_last_row_that_was_written_in_part_is_told_and_the_others_are_compared(tmp_path: Path) -> None:
+    save_log(tmp_path / "own.csv", own())
+    whole = (tmp_path / "own.csv").read_text().rstrip("\n")
+    (tmp_path / "own.csv").write_text(whole.rsplit(",", 3)[0])
+    replay, said = recorded_replay(tmp_path / "own.csv", ce150_table(), plant())
+    assert replay.sent is not None
+    assert len(replay.sent) == len(own().t_s) - 1
+    assert said[0].startswith(f"own.csv: line {len(own().t_s) + 1}, the last, was not written to its end")
 
 
 def test_a_log_whose_columns_are_wrong_is_refused_and_not_laid_on_the_firmware(tmp_path: Path) -> None:
@@ -53,7 +62,7 @@ def test_readings_of_zero_that_the_log_check_leaves_out_are_not_laid_on_the_firm
     save_log(tmp_path / "zeros.csv", replace(log, y=y))
     replay, said = recorded_replay(tmp_path / "zeros.csv", ce150_table(), plant())
     assert replay.sent is None
-    assert "the firmware is cleared" in (said or "")
+    assert "the firmware is cleared" in " ".join(said)
 
 
 FIRST = [
@@ -72,7 +81,7 @@ def test_a_wrong_first_value_that_the_law_did_not_have_fails_no_verification(
     save_log(tmp_path / "wrong.csv", begun_with(column, rows, value))
     replay, said = recorded_replay(tmp_path / "wrong.csv", ce150_table(), plant())
     assert replay.sent is None
-    assert told in (said or "")
+    assert told in " ".join(said)
 
 
 def test_a_wrong_first_command_fails_the_verification(tmp_path: Path) -> None:

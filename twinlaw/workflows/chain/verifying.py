@@ -13,6 +13,7 @@ from logcheck.integrity import OTHER_NUMBERS, as_read, examine
 from logcheck.integrity import demand as demand_log
 from records.board import STM32G071
 from records.errors import VerificationFailed
+from records.log import RunLog
 from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
@@ -169,14 +170,23 @@ def equal_steps(
 
 def recorded_replay(
     path: Path, table: ControllerTable, bound: BoundPlant, arithmetic: str = "float32"
+) -> tuple[Replay, tuple[str, ...]]:
+    """A run log of any known plant, to be replayed in an arithmetic, and what is said of it: a last row that was written in part, what
+    it lacks to be compared bit by bit, or what explains that it differs; raises BadInput.
+    """
+    log = load_known_log(path, bound)
+    replay, said = _compared(log, replay_of(log, table, path, arithmetic), table, bound, path)
+    half = None if log.half_row is None else f"{path.name}: {log.half_row.told}"
+    return replay, tuple(filter(None, (half, said)))
+
+
+def _compared(
+    log: RunLog, replay: Replay, table: ControllerTable, bound: BoundPlant, path: Path
 ) -> tuple[Replay, str | None]:
-    """A run log of any known plant, to be replayed in an arithmetic, and what it lacks to be compared bit by bit, or what explains that it
-    differs; raises BadInput.
+    """The replay of a log as far as its inputs can be compared, and why not farther, or why they differ; raises BadInput.
 
     What the log lacks, or holds in too few digits, is not the law's failure: it is a stimulus, and its inputs are not compared.
     """
-    log = load_known_log(path, bound)
-    replay = replay_of(log, table, path, arithmetic)
     if replay.sent is None or not has_replayable_columns(log, table):
         return replay, None
     begins, unread = None, False
