@@ -24,7 +24,7 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
     odd = [
         *_time_unit(log, name, bound),
         *exchange_findings(log, name, bound),
-        *turned_findings(log, name, bound, facts.steps),
+        *turned_findings(log, name, bound, facts),
     ]
     yield from odd
     if any(entry.finding.severity == REFUSE for entry in odd):

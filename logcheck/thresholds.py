@@ -162,6 +162,11 @@ SEAM_KINK = Limit(2.0, "times the usual change of speed", "across a step: no for
 SEAM_ROWS = Count(5, "rows", "a mass that is thrown is fast in the next rows too; a reading that fails comes back")
 BESIDE_FIRST_STEPS = Limit(4.0, "encoder steps", "rigs come to rest so near to where they rested before")
 BESIDE_FIRST_SHARE = Limit(0.02, "share of a column's range", "a run begins so near to where the one before began")
+SEAM_EVEN = Limit(
+    0.4,
+    "share of the mean move",
+    "by which each move beside is off where an axis goes on evenly: an encoder's by a step of four",
+)
 LONGEST_HELD_S = Limit(
     0.2, "s", "readings repeated so long move on by all that they missed; longer ones are dead stretches"
 )

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from logcheck.facts import plant_facts
 from logcheck.integrity import demand, examine
 from logcheck.leaps.turned import turned_findings
 from records.errors import BadInput
 from records.log import RunLog
-from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
+from tests.logcheck.test_parts import PLANT, STEP_RAD, log_of, rounded
+
+FACTS = plant_facts(PLANT)
 
 
 def turned(log: RunLog, *rows: int, column: int = 1) -> RunLog:
@@ -21,7 +24,7 @@ def turned(log: RunLog, *rows: int, column: int = 1) -> RunLog:
 
 
 def times_s(log: RunLog) -> list[float]:
-    return [found.finding.start_s for found in turned_findings(log, "a", PLANT, STEPS)]
+    return [found.finding.start_s for found in turned_findings(log, "a", PLANT, FACTS)]
 
 
 def at_rest(log: RunLog) -> RunLog:
@@ -41,11 +44,31 @@ def test_a_sign_that_turns_is_refused_with_its_column_and_time(row: int) -> None
 
 def test_it_is_found_at_rest_and_there_and_back_and_between_unread_rows() -> None:
     assert times_s(turned(at_rest(log_of()), 1000)) == pytest.approx([10.0])
-    (found,) = turned_findings(turned(log_of(), 700, 730), "a", PLANT, STEPS)
+    (found,) = turned_findings(turned(log_of(), 700, 730), "a", PLANT, FACTS)
     assert "turns at 7 s, 7.3 s" in found.finding.sentence
     unread = turned(log_of(), 1000)
     unread.y[[700, 995, 1004], 1] = np.nan
     assert times_s(unread) == pytest.approx([10.0])
+
+
+def fast() -> RunLog:
+    """The azimuth swings through zero at 1 rad/s, seven encoder steps from row to row."""
+    y = log_of().y.copy()
+    y[:, 1] = rounded(0.35 * np.sin(3.0 * log_of().t_s))
+    return replace(log_of(), y=y)
+
+
+def test_it_is_found_where_the_axis_passes_zero_and_nothing_leaps() -> None:
+    rows = np.flatnonzero(np.diff(np.sign(fast().y[:, 1])))
+    for row in rows[[4, 7, 12]] + 1:
+        assert times_s(turned(fast(), row)) == pytest.approx([0.01 * row], abs=0.011)
+    assert times_s(fast()) == []
+
+
+def test_an_axis_that_a_stop_at_zero_throws_back_has_not_turned_its_sign() -> None:
+    """Truth: a plant without stops in its file, and nothing is read below zero."""
+    thrown = replace(fast(), y=np.abs(fast().y))
+    assert list(turned_findings(thrown, "a", PLANT, replace(FACTS, stops={}))) == []
 
 
 def test_a_leap_elsewhere_or_a_turn_about_or_a_glitch_is_no_turned_sign() -> None:
