@@ -15,7 +15,7 @@ from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.idle import shares_of, without_idle
-from diagnosis.decide.range_ends import RangeEnd, range_ends
+from diagnosis.decide.range_ends import range_ends, within_ranges
 from diagnosis.decide.rows import demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Explanations, Weighed, chosen_of, first_share, weigh
@@ -34,7 +34,6 @@ from diagnosis.seeing import alarmed, alone_of, beside_noise, detected_anew, see
 from diagnosis.standing import confirmed_by, is_noise, may_be_missing, of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
-from records.log import RunLog
 from records.reasons import Note
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
@@ -73,16 +72,8 @@ def _within_ranges(bound: BoundPlant, material: Material) -> Material:
     ends = tuple(range_ends(plain, material.logs, material.used[:split], names))
     if not ends:
         return material
-    logs, holdout = ([_unread(log, ends) for log in some] for some in (material.logs, material.holdout))
+    logs, holdout = ([within_ranges(log, ends) for log in some] for some in (material.logs, material.holdout))
     return replace(material, logs=logs, holdout=holdout, notes=(*material.notes, *(end.note for end in ends)))
-
-
-def _unread(log: RunLog, ends: Sequence[RangeEnd]) -> RunLog:
-    """The log without the readings at the ends of ranges."""
-    y = log.y.copy()
-    for end in ends:
-        y[y[:, end.place] == end.level, end.place] = np.nan
-    return replace(log, y=y)
 
 
 def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:

@@ -7,7 +7,7 @@ twice: after all that was read, and after all but the stand.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +71,14 @@ def range_ends(
                         place, level, _note(column, level, how, logs[stand.log], names[stand.log], stand, misled)
                     )
                     break
+
+
+def within_ranges(log: RunLog, ends: Sequence[RangeEnd]) -> RunLog:
+    """The log without the readings at the ends of ranges."""
+    y = log.y.copy()
+    for end in ends:
+        y[y[:, end.place] == end.level, end.place] = np.nan
+    return replace(log, y=y) if ends else log
 
 
 def _longest(logs: Sequence[RunLog], column: str, level: float) -> list[_Stand]:

@@ -75,10 +75,8 @@ def _may_be_stopped_at_zero(values: Array, stops: tuple[float, float], step: flo
     """Whether the plant has no stops on either side of zero, and nothing is read on one side of it: there may be a stop."""
     margin = thresholds.BEYOND_STOP_rad
     is_between = stops[0] < -margin and margin < stops[1]
-    return (
-        not is_between
-        and min(np.max(values, initial=0.0), -np.min(values, initial=0.0)) < thresholds.LEAST_SEAM_STEPS * step
-    )
+    beyond = min(float(np.max(values, initial=0.0)), -float(np.min(values, initial=0.0)))
+    return not is_between and beyond < thresholds.LEAST_SEAM_STEPS * step
 
 
 def _turns_at_zero(t_s: Array, values: Array, period_s: float, step: float) -> NDArray[np.int64]:
@@ -95,7 +93,7 @@ def _turns_at_zero(t_s: Array, values: Array, period_s: float, step: float) -> N
     turns &= np.abs(usual) * SIDE > thresholds.LEAST_SEAM_STEPS * step
     turns &= t_s[rows + SIDE] - t_s[rows - 1 - SIDE] < (2 * SIDE + thresholds.GAP_PERIODS) * period_s
     found = rows[turns]
-    return found[np.diff(found, prepend=-1) > 1]
+    return np.asarray(found[np.diff(found, prepend=-1) > 1])
 
 
 def _is_even(values: Array, rows: NDArray[np.int64], two: int) -> Rows:

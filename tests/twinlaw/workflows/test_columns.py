@@ -8,7 +8,8 @@ import pytest
 from diagnosis import decisions
 from records.errors import BadInput
 from tests.diagnosis.arm import arm, arm_log
-from twinlaw.workflows.identify.columns import demand_columns, where_most_moves
+from twinlaw.workflows.identify.columns import asked_for_ranges, demand_columns, where_most_moves
+from twinlaw.workflows.identify.inputs import Inputs
 
 
 def test_of_a_long_log_the_rows_in_which_its_outputs_travel_most_are_looked_at() -> None:
@@ -32,3 +33,17 @@ def test_a_column_that_is_turned_is_refused_or_doubted_and_no_honest_one() -> No
     assert demand_columns(arm(), {"a": log}) == ()
     with pytest.raises(BadInput, match="theta_rad has the wrong sign"):
         demand_columns(arm(), {"a": replace(log, y=-log.y)})
+
+
+def test_readings_where_a_sensor_s_range_ends_are_told_and_left_out_of_the_fit_and_of_what_is_predicted() -> None:
+    """Truth: an arm's sensor that reads up to 0.8 of the way."""
+    log = arm_log(seed=7)
+    y = log.y[:, 0]
+    level = float(y[np.argmin(np.abs(y - np.min(y) - 0.8 * np.ptp(y)))])
+    cut_off = replace(log, y=np.minimum(log.y, level))
+    asked = asked_for_ranges(Inputs((), {"a": cut_off}, {"b": cut_off}), arm())
+    for each in (asked.logs["a"], asked.holdout["b"]):
+        np.testing.assert_array_equal(np.isnan(each.y), cut_off.y == level)
+    (said,) = asked.notes
+    assert said.startswith(f"a: theta_rad never exceeds {level:.5g} rad")
+    assert asked_for_ranges(Inputs((), {"a": log}, {}), arm()).notes == ()

@@ -1,4 +1,4 @@
-"""Are columns what they are called? As a diagnosis asks it, before parameters are bent to what is not there."""
+"""Are columns what they are called, and does a sensor's range end? As a diagnosis asks it, before parameters are bent to it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decide.clock import clock_in_doubt
+from diagnosis.decide.range_ends import range_ends, within_ranges
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.fit.nominal import plain_fit
@@ -29,7 +30,20 @@ def usable_inputs(
     inputs = read_inputs(files, holdout, bound)
     if trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *trim) for name, log in inputs.logs.items()})
-    return asked_for_columns(looked_at(inputs, bound), bound)
+    return asked_for_columns(asked_for_ranges(looked_at(inputs, bound), bound), bound)
+
+
+def asked_for_ranges(inputs: Inputs, bound: BoundPlant) -> Inputs:
+    """The inputs with nothing read where a sensor's range ends, as the logs to fit show, and what is to be said of that."""
+    with console.stage("asking whether a sensor's range ends where it stands"):
+        ends = tuple(
+            range_ends(_plain(bound), list(inputs.logs.values()), [None] * len(inputs.logs), list(inputs.logs))
+        )
+    logs, holdout = (
+        {name: within_ranges(log, ends) for name, log in some.items()} for some in (inputs.logs, inputs.holdout)
+    )
+    notes = tuple(end.note.said for end in ends if end.note.said)
+    return replace(inputs, logs=logs, holdout=holdout, notes=(*inputs.notes, *notes))
 
 
 def asked_for_columns(inputs: Inputs, bound: BoundPlant) -> Inputs:
@@ -46,11 +60,15 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
     with another, or moved by rows."""
     if not logs:
         return ()
-    library, where = effect_library(without_effects(bound) if bound.effects else bound), ", ".join(logs)
+    library, where = effect_library(_plain(bound)), ", ".join(logs)
     busiest = make_case(library, [where_most_moves(log) for log in logs.values()], stated=bound)
     nominal = plain_fit(busiest)
     told = demand_wiring(busiest, nominal, plain_fit, where)
     return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)), *clock_in_doubt(busiest, nominal))
+
+
+def _plain(bound: BoundPlant) -> BoundPlant:
+    return without_effects(bound) if bound.effects else bound
 
 
 def where_most_moves(log: RunLog) -> RunLog:
