@@ -123,9 +123,10 @@ def _of_another_quantity(unit: Unit | None) -> bool:
 def _clock_of(name: str, signal: Signal, signals: Mapping[str, Signal], clocks: list[str]) -> str | None:
     if name in clocks:
         return None
-    scope = name
-    while scope:
-        scope = _around(scope)
+    scopes = [name]  # what lies under a matrix are its own columns, where they have names
+    while scopes[-1]:
+        scopes.append(_around(scopes[-1]))
+    for scope in scopes:
         beside = [
             clock
             for clock in clocks

@@ -8,7 +8,8 @@ import numpy as np
 
 from recordings.formats.clocks import with_clocks
 from recordings.formats.matlab_objects import what
-from recordings.formats.nested import Unreadable, flat
+from recordings.formats.named_columns import named_columns
+from recordings.formats.nested import Unreadable, flat, texts_of
 from recordings.formats.optional import package
 from recordings.layout import TextLayout
 from recordings.signals import Contents
@@ -22,7 +23,8 @@ def read(path: Path, asked: TextLayout) -> Contents:
     units: dict[str, str] = {}
     found = flat(content(path, units))
     signals = {name: replace(signal, unit=units.get(name, "")) for name, signal in found.signals.items()}
-    return Contents(with_clocks(signals), found.texts, unread=found.unread, singles=found.singles)
+    named, told = named_columns(found)
+    return Contents(with_clocks({**signals, **named}), found.texts, told, unread=found.unread, singles=found.singles)
 
 
 def content(path: Path, units: dict[str, str] | None = None) -> dict[str, Any]:
@@ -80,9 +82,10 @@ def _value(node: Any, file: Any) -> Any:
     if node.dtype.kind == "O" and node.dtype.metadata and "ref" in node.dtype.metadata:
         return [_value(file[reference], file) for reference in np.ravel(node[()].T) if reference]
     if kind == "char":
-        return "".join(map(chr, np.ravel(node[()].T)))
-    if node.dtype.kind in "OSU" and node.shape == ():
-        return node.asstr()[()] if node.dtype.kind == "O" else node[()].decode(errors="replace")
+        rows = ["".join(map(chr, row)) for row in np.atleast_2d(node[()].T)]
+        return rows if len(rows) > 1 else "".join(rows)
+    if node.dtype.kind == "S" or (node.dtype.metadata or {}).get("vlen") in (str, bytes):
+        return texts_of(np.asarray(node.asstr(errors="replace")[()]))
     if node.dtype.names:
         return {name: np.asarray(node[name]) for name in node.dtype.names}
     return np.asarray(node[()]).T if kind else np.asarray(node[()])

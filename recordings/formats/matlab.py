@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from numpy import ndarray
 from scipy.io import loadmat
 from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadError
 from scipy.sparse import issparse
@@ -14,12 +15,12 @@ from scipy.sparse import issparse
 from recordings.formats import hdf5
 from recordings.formats.clocks import is_time_name, with_clocks
 from recordings.formats.matlab_objects import what, with_objects
-from recordings.formats.nested import Unreadable, flat
+from recordings.formats.named_columns import UNITS, named_columns
+from recordings.formats.nested import Unreadable, flat, texts_of
 from recordings.layout import TextLayout
 from recordings.signals import Contents
 from records.errors import BadInput
 
-_UNITS = ("unit", "units", "Unit", "Units")
 OCTAVE = b"# Created by Octave"  # in which it saves where it is not told otherwise
 _LABELS = (
     "label",
@@ -40,12 +41,13 @@ def read(path: Path, asked: TextLayout) -> Contents:
     signals = {
         name: replace(
             signal,
-            unit=_beside(name, _UNITS, texts),
+            unit=_beside(name, UNITS, texts),
             heading=_label(name, texts, found.signals) or _of_series(name, found.signals),
         )
         for name, signal in found.signals.items()
     }
-    return Contents(with_clocks(signals), texts, unread=found.unread, singles=found.singles)
+    named, told = named_columns(found)
+    return Contents(with_clocks({**signals, **named}), texts, told, unread=found.unread, singles=found.singles)
 
 
 def _label(name: str, texts: Mapping[str, str], signals: Mapping[str, object]) -> str:
@@ -109,6 +111,8 @@ def _readable(value: Any) -> Any:
         return {name: _readable(inner) for name, inner in value.items()}
     if issparse(value):
         return value.toarray() if 1 in value.shape else Unreadable("a sparse matrix")
+    if isinstance(value, ndarray) and value.dtype.kind == "U":
+        return texts_of(value)  # a char matrix holds one in each row
     if isinstance(value, MatlabOpaque):
         return Unreadable(what(_class_of(value)))
     return Unreadable(what()) if isinstance(value, MatlabFunction) else value

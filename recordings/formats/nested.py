@@ -9,6 +9,7 @@ import numpy as np
 from recordings.signals import Signal
 
 FEWEST_ROWS = 10  # a handful of entries are as many motors, say
+MOST_TEXTS = 256  # in one array, which may be the names of columns: more are a column of words
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,13 @@ class Unreadable:
 
     def __str__(self) -> str:
         return self.told
+
+
+def texts_of(array: np.ndarray) -> str | list[str] | Unreadable:
+    """An array of texts as nested content has it: one as itself, as many as may be names one by one, a column of words as such."""
+    if array.size > MOST_TEXTS:
+        return Unreadable("words")
+    return str(array) if array.ndim == 0 else [str(text) for text in array.flat]
 
 
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:

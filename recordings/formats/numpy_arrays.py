@@ -7,7 +7,8 @@ from zipfile import BadZipFile
 import numpy as np
 
 from recordings.formats.clocks import with_clocks
-from recordings.formats.nested import Unreadable, flat
+from recordings.formats.named_columns import named_columns
+from recordings.formats.nested import flat, texts_of
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
 from records.errors import BadInput
@@ -32,7 +33,8 @@ def read(path: Path, asked: TextLayout) -> Contents:
     dated = {name: array for name, array in arrays.items() if array.dtype.kind in "Mm"}
     signals = {**found.signals, **{name: Signal(_seconds(array), "s", instants=True) for name, array in dated.items()}}
     unread = {name: told for name, told in found.unread.items() if name not in dated}
-    return Contents(with_clocks(signals), found.texts, unread=unread, singles=found.singles)
+    named, told = named_columns(found)
+    return Contents(with_clocks({**signals, **named}), found.texts, told, unread=unread, singles=found.singles)
 
 
 def _arrays(loaded: Any) -> dict[str, Any]:
@@ -47,9 +49,7 @@ def _arrays(loaded: Any) -> dict[str, Any]:
 
 
 def _readable(array: Any) -> Any:
-    if array.dtype.kind in "US":
-        return str(array) if array.ndim == 0 else Unreadable("words")
-    return array
+    return texts_of(array) if array.dtype.kind in "US" else array
 
 
 def _seconds(array: Any) -> Any:

@@ -103,6 +103,8 @@ def test_a_truncated_matlab_file_is_refused_at_every_length(tmp_path: Path) -> N
 CELLS = np.empty((1, 5), object)
 CELLS[0] = list(RUN.values())
 MATRIX = np.vstack([RUN[name] for name in RUN])
+FIVE = list(RUN)
+NAMES = np.array(FIVE, object)
 SCOPE = np.zeros(4, dtype=[("values", "O"), ("label", "O")])
 for place, name in enumerate(FOUR):
     SCOPE[place] = (RUN[name][:, None], name)
@@ -152,6 +154,15 @@ KINDS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "a negative sign": ({**RUN, "psi_rad": -RUN["psi_rad"]}, {"psi_rad": "-psi_rad"}),
     "no times at all": ({name: RUN[name] for name in FOUR}, {"t_s": "row*0.01"}),
     "a sample period alone": ({**{name: RUN[name] for name in FOUR}, "Ts": 0.01}, {"t_s": "Ts*row"}),
+    "names beside a matrix": ({"log": MATRIX.T, "names": NAMES, "K": np.eye(5), "sizes": np.ones((2, 5))}, {}),
+    "names beside rows": ({"log": MATRIX, "names": NAMES}, {}),
+    "importdata": ({"S": {"data": MATRIX.T, "colheaders": NAMES, "textdata": NAMES}}, {}),
+    "a char matrix of names": ({"tout": T_S, "yout": MATRIX[1:].T, "names": np.array(FIVE[1:])}, {}),
+    "names with units beside": (
+        {"log": MATRIX.T * 1e3, "names": np.array(["t", "u_M", "u_T", "psi", "phi [mrad]"], object)}
+        | {"units": np.array(["ms", "mV", "mV", "mrad", "mrad"], object)},
+        {},
+    ),
     "cells": ({"log": CELLS}, {name: f"log({place})" for place, name in enumerate(RUN, start=1)}),
     "ticks of 16 bits": ({**{name: RUN[name] for name in FOUR}, "millis": (T_S * 1e3).round() % 65536}, {}),
 }  # fmt: skip
@@ -220,3 +231,16 @@ def test_of_several_matrices_it_is_told_how_many_vectors_each_holds(tmp_path: Pa
         imported_here(tmp_path / "run.mat", ColumnMapping())
     assert "In.signals.values(:,1..2)" in refused.value.got
     assert "Out.signals.values(:,1..2)" in refused.value.got
+
+
+def test_names_beside_a_matrix_are_told_and_taken_only_where_one_array_of_them_fits_one_matrix(tmp_path: Path) -> None:
+    """Truth: the columns by their places and by their names are the same ones; two matrices, or two arrays of names, are asked for."""
+    named = {"log": MATRIX.T, "names": NAMES}
+    savemat(tmp_path / "run.mat", named)
+    done = imported_here(tmp_path / "run.mat", mapped(psi_rad="log(:,4)"))
+    np.testing.assert_array_equal(done.log.column("psi_rad"), RUN["psi_rad"])
+    assert done.found[0] == "log has the columns that names names: t_s, u_M_V, u_T_V, psi_rad, phi_rad"
+    for other in ({"second": MATRIX.T}, {"others": np.array(list("abcde"), object)}):
+        savemat(tmp_path / "two.mat", named | other)
+        with pytest.raises(BadInput, match="columns t_s, u_M_V"):
+            imported_here(tmp_path / "two.mat", ColumnMapping())
