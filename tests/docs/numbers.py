@@ -15,7 +15,8 @@ Left of = stands a number as the page writes it, right of it an expression witho
   its kind alike; a key's hyphen is written _;
 - len, min, max, round of these.
 
-A comment speaks of the text between the headings about it.
+A comment directly below a text speaks of that text alone; one set apart by a blank line, of all between the headings about it. A number
+stands there as often as expressions give it.
 """
 
 import re
@@ -53,24 +54,32 @@ class Held:
 
 def held(page: str) -> Iterator[Held]:
     """Every number of a page that a comment holds."""
-    for text, comments in scopes(page):
-        for comment in comments:
-            for pair in comment.split(","):
-                number, _, expression = pair.partition("=")
-                yield Held(page, number, expression, text)
+    for part in _parts(page):
+        for block in part.split("\n\n"):
+            for comment in _COMMENT.findall(block):
+                for pair in comment.split(","):
+                    number, _, expression = pair.partition("=")
+                    yield Held(page, number, expression, _without_comments(block).strip() or _without_comments(part))
 
 
 def scopes(page: str) -> Iterator[tuple[str, list[str]]]:
-    """The texts of a page between headings, each with the comments in it; thousands are written together."""
-    text = (ROOT / page).read_text(encoding="utf-8")
-    for part in _BORDER.split(text):
-        comments = _COMMENT.findall(part)
-        yield re.sub(r"(?<=\d) (?=\d{3}\b)", "", _COMMENT.sub("", part)), comments
+    """The texts of a page between headings, each with the comments in it."""
+    for part in _parts(page):
+        yield _without_comments(part), _COMMENT.findall(part)
 
 
-def numbers(text: str) -> set[str]:
-    """The numbers of a text as they are written."""
-    return set(re.findall(rf"(?<![\w.]){NUMBER}(?![\w.]*\d)", text))
+def _parts(page: str) -> list[str]:
+    return _BORDER.split((ROOT / page).read_text(encoding="utf-8"))
+
+
+def _without_comments(text: str) -> str:
+    """What a reader sees, thousands written together."""
+    return re.sub(r"(?<=\d) (?=\d{3}\b)", "", _COMMENT.sub("", text))
+
+
+def numbers(text: str) -> list[str]:
+    """The numbers of a text as they are written, each as often as it stands there."""
+    return re.findall(rf"(?<![\w.]){NUMBER}(?![\w.]*\d)", text)
 
 
 def value(expression: str) -> float:
