@@ -4,7 +4,7 @@ Noise that is white alone prefers names that colour it. So what could yet lead i
 where that promises more.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
@@ -81,21 +81,27 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
     reach = dict(zip(asked, thread_map(lambda entry: _reach(case, begun[entry], left), asked), strict=True))
     least = max(entry.evidence for entry in (first, *begun.values())) - decisions.NEAR_BEST
     near = [entry for entry in sorted(asked, key=lambda entry: -begun[entry].evidence) if reach[entry] >= least]
-    own = _until_noise(case, near, first, left, least)
-    known = [first, *(found for found in own.values() if found is not None and has_memory(case, found))]
+    own = _until_noise(case, near, begun, first, left, least)
+    known = [first, *(end for end in own.values() if end is not None and has_memory(case, end))]
     least = max(least, *(entry.evidence - decisions.NEAR_BEST for entry in known))
     rest = [entry for entry in near if entry not in own and reach[entry] >= least]
-    own |= zip(rest, thread_map(lambda entry: _own_noise(case, entry, known, left, least), rest), strict=True)
-    return [found for entry in asked if (found := own.get(entry, begun[entry])) is not None]
+    found = thread_map(lambda entry: _own_noise(case, entry, begun[entry], known, left, least), rest)
+    own |= zip(rest, found, strict=True)
+    return [end for entry in asked if (end := own.get(entry, begun[entry])) is not None]
 
 
 def _until_noise(
-    case: Case, near: Sequence[FittedHypothesis], first: FittedHypothesis, left: float, least: float
+    case: Case,
+    near: Sequence[FittedHypothesis],
+    begun: Mapping[FittedHypothesis, FittedHypothesis],
+    first: FittedHypothesis,
+    left: float,
+    least: float,
 ) -> dict[FittedHypothesis, FittedHypothesis | None]:
     """What own noise makes of those near, in turn, down to the first that takes some with a memory."""
     own = dict[FittedHypothesis, FittedHypothesis | None]()
     for entry in near:
-        own[entry] = found = _own_noise(case, entry, [first], left, least)
+        own[entry] = found = _own_noise(case, entry, begun[entry], [first], left, least)
         if found is not None and has_memory(case, found):
             break
     return own
@@ -119,13 +125,19 @@ def _fit_under(case: Case, fitted: FittedHypothesis, known: FittedHypothesis, ro
 
 
 def _own_noise(
-    case: Case, fitted: FittedHypothesis, known: Sequence[FittedHypothesis], left: float, least: float
+    case: Case,
+    fitted: FittedHypothesis,
+    begun: FittedHypothesis,
+    known: Sequence[FittedHypothesis],
+    left: float,
+    least: float,
 ) -> FittedHypothesis | None:
-    """The hypothesis with the noise of one that is `known`; or with what it shows by itself, where its innovations promise more than the
-    `left` nats that those of the first foretell, and evidence of as much as `least`, and that is likelier."""
+    """The hypothesis with the noise of one that is `known`, from where it was `begun` under such; or with what it shows by itself, where
+    its innovations promise more than the `left` nats that those of the first foretell, and evidence of as much as `least`, and that is
+    likelier."""
     found = list[FittedHypothesis]()
     for other in known:
-        shared = _with_memory(case, fitted, other) if has_memory(case, other) else fitted
+        shared = _settled_under(case, fitted, begun, other) if has_memory(case, other) else fitted
         if shared is None:
             continue
         found.append(shared)
@@ -143,7 +155,7 @@ def with_noise_of(case: Case, fitted: Sequence[FittedHypothesis], known: FittedH
     would be more than noise are left out."""
     if not has_memory(case, known):
         return list(fitted)
-    found = thread_map(lambda entry: _with_memory(case, entry, known), fitted)
+    found = thread_map(lambda entry: _settled_under(case, entry, entry, known), fitted)
     return [entry for entry in found if entry is not None]
 
 
@@ -182,17 +194,22 @@ def _foretold(case: Case, fitted: FittedHypothesis) -> float:
     return foretold_of(case, fitted.fit.hypothesis)
 
 
-def _with_memory(
-    case: Case, fitted: FittedHypothesis, known: FittedHypothesis | None = None
+def _with_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
+    """The hypothesis with its noise with a memory, or itself where that is no likelier; None where it would be more than noise."""
+    found = with_memory(case, fitted.fit)
+    return fitted if found is fitted.fit else _noise_alone(case, fitted, found)
+
+
+def _settled_under(
+    case: Case, fitted: FittedHypothesis, begun: FittedHypothesis, known: FittedHypothesis
 ) -> FittedHypothesis | None:
-    """The hypothesis with its noise with a memory, sought from that of one that is `known`, or itself where that is no likelier; None where
-    it would be more than noise."""
-    if known is None:
-        found = with_memory(case, fitted.fit)
-    else:
-        found = with_memory_of(case, fitted.fit, known.fit.hypothesis)
-    if found is fitted.fit:
-        return fitted
+    """The same with noise sought from that of one that is `known`, and all else from where it was `begun`."""
+    return _noise_alone(case, fitted, with_memory_of(case, begun.fit, known.fit.hypothesis))
+
+
+def _noise_alone(case: Case, fitted: FittedHypothesis, found: Fit) -> FittedHypothesis | None:
+    """What was found with noise with a memory, or the hypothesis itself where that is likelier; None where it predicts worse by more than
+    what matters: then it took what is no noise."""
     told = as_fitted(case, found)
     if told.evidence <= fitted.evidence:
         return fitted

@@ -232,8 +232,8 @@ def test_own_noise_is_not_sought_beside_what_stays_out_of_reach_under_noise_that
     (noisy,) = beside_noise(late, [drive])
     (shared,) = with_noise_of(late, [sensor], noisy)
     with decisions.changed("TAKEN_IN", 1e-9):  # whatever little its innovations promise
-        out = _own_noise(late, sensor, [noisy], 0.0, least=shared.evidence + 1e6)
-        near = _own_noise(late, sensor, [noisy], 0.0, least=-np.inf)
+        out = _own_noise(late, sensor, sensor, [noisy], 0.0, least=shared.evidence + 1e6)
+        near = _own_noise(late, sensor, sensor, [noisy], 0.0, least=-np.inf)
     assert out is not None
     assert near is not None
     assert out.evidence == shared.evidence
