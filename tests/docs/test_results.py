@@ -244,17 +244,23 @@ def test_what_the_page_says_of_300_cases_beside_their_tables_is_in_their_score()
     every, whole = (figures[f"hold-out shrinkage, tenth percentile{what}"] for what in ("", ", no frames lost"))
     assert f"**Shrinkage**: {every['cases'] - whole['cases']} of {every['cases']} lost frames" in BLIND
     assert f"its tenth percentile is {whole['value']:.3f}." in BLIND
-    sure = [entry for entry in found["reliability"] if entry["low"] >= 0.8]
-    count = sum(entry["count"] for entry in sure)
-    stated, right = (sum(entry["count"] * entry[key] for entry in sure) / count for key in ("stated", "right"))
-    assert f"Of {count} answers stated with 0.8 and more, {stated:.2f} in the mean, {right:.2f} are right." in one_line(
-        BLIND
-    )
+
+
+def test_what_the_page_says_of_all_fresh_cases_is_in_their_score() -> None:
+    found = result("blind_fresh_together")
+    assert f"All {found['cases']} of seeds" in BLIND
+    figures = {entry["name"]: entry for entry in found["figures"]}
+    for name, value, interval, cases in rows("|figure|value|95 % interval|cases|", BLIND):
+        own = figures[name]
+        assert value == _shown(own["value"])
+        assert (interval, cases) == (" to ".join(map(_shown, own["interval"])), str(own["cases"]))
     counted = [(entry["count"], entry["stated"]) for entry in found["reliability"]]
     total = sum(count for count, _ in counted)
     # |mean of n honest answers - p| is on average sqrt(2 p (1 - p) / pi n)
     chance = sum(count / total * (2.0 * p * (1.0 - p) / (np.pi * count)) ** 0.5 for count, p in counted)
-    assert f"honest ones would have an error of {chance:.2f}." in one_line(BLIND)
+    assert f"Of the {found['cases']} fresh cases" in BLIND
+    error = _shown(figures["expected calibration error"]["value"])
+    assert f"Their calibration error is {error}; honest answers would have one of {chance:.2f}." in BLIND
 
 
 def one_line(text: str) -> str:
@@ -292,15 +298,14 @@ def test_the_figures_of_300_cases_are_those_of_their_scores() -> None:
 
 
 @pytest.mark.parametrize(
-    ("heading", "key", "lines"),
+    ("heading", "found", "lines"),
     [
-        ("| severity |", "detection_after_retune", ("cases", "detected")),
-        ("| stated |", "reliability", ("count", "stated", "right")),
+        ("|severity|", result("blind_first_rig")["diagnose"]["detection_after_retune"], ("cases", "detected")),
+        ("|stated|", result("blind_fresh_together")["reliability"], ("count", "stated", "right")),
     ],
 )
-def test_detection_and_reliability_of_300_cases_are_those_of_their_score(
-    heading: str, key: str, lines: tuple[str, ...]
+def test_detection_and_reliability_are_those_of_their_scores(
+    heading: str, found: list[dict[str, float]], lines: tuple[str, ...]
 ) -> None:
-    found = result("blind_first_rig")["diagnose"][key]
     for counted, (_, *cells) in zip(lines, rows(heading, BLIND), strict=True):
-        assert [float(cell) for cell in cells] == [entry[counted] for entry in found]
+        assert [float(cell) for cell in cells] == [round(entry[counted], 3) for entry in found]
