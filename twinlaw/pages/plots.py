@@ -153,8 +153,9 @@ def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
             xlabel="stated probability of the first answer",
             ylabel="share right",
         )
-        axes.legend(loc="lower right")
-        arrange(figure, np.array([[axes]]))
+        handles, names = axes.get_legend_handles_labels()
+        figure.legend(handles, names, loc="lower center", ncols=len(names), fontsize=LEGEND_POINTS)
+        arrange(figure, np.array([[axes]]), below_in=names_in(len(names), len(names)))
         return svg(figure)
 
 
