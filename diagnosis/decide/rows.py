@@ -59,7 +59,7 @@ class Misplaced:
 
 
 @dataclass(frozen=True)
-class Moved:
+class ColumnShift:
     """What it gains, in nats, to move columns, and whether the plant then follows the logs; which other moves gain about as much; and
     where the plant's fit to the moved columns ended."""
 
@@ -106,7 +106,7 @@ def demand_rows(
     )
 
 
-def _from_the_moved(case: Case, usual: Fit, found: Moved) -> Fit:
+def _from_the_moved(case: Case, usual: Fit, found: ColumnShift) -> Fit:
     """The plant's fit to the logs as they are from where that to the moved columns ended, where that is the better one: where the plant
     follows the logs by nothing, slopes promise anything."""
     assert found.end is not None
@@ -149,7 +149,7 @@ class Asked:
             -np.inf if at is None else at.log_posterior + at.promised - self.usual.log_posterior - self.usual.promised
         )
 
-    def moved(self, slip: Misplaced) -> Moved:
+    def moved(self, slip: Misplaced) -> ColumnShift:
         """What a move gains once the plant is fitted to it, from where its fit to the logs as they are ended and afresh: numbers that make
         up for a command at a wrong time may lie where no slope leads back from."""
         other = moved(self.case, slip)
@@ -158,9 +158,9 @@ class Asked:
             found for start in (self.usual.hypothesis, afresh) if (found := settled_or_none(other, start)) is not None
         ]
         if not ends:
-            return Moved(slip, -np.inf, False)
+            return ColumnShift(slip, -np.inf, False)
         end = max(ends, key=lambda found: found.log_posterior)
-        return Moved(slip, gain_over(self.case, self.usual, end), not is_strained(other, end), end=end)
+        return ColumnShift(slip, gain_over(self.case, self.usual, end), not is_strained(other, end), end=end)
 
     @property
     def commands(self) -> tuple[Misplaced, ...]:
@@ -169,7 +169,7 @@ class Asked:
         return (Misplaced(every, 1), Misplaced(every, -1)) if every else ()
 
 
-def misplaced(asked: Asked) -> tuple[Moved | None, tuple[float, ...]]:
+def misplaced(asked: Asked) -> tuple[ColumnShift | None, tuple[float, ...]]:
     """The columns that stand in other rows than those of their time, None where none do; and what it promises, in nats, to move all inputs
     by a row, late and early."""
     model = asked.case.library.bound.model
@@ -207,7 +207,7 @@ def _better(gain: float) -> str:
     return f"{abs(gain):.2g} nats {'better' if gain > 0.0 else 'worse'}" if np.isfinite(gain) else "not at all"
 
 
-def _furthest(found: Moved, asked: Callable[[Misplaced], Moved]) -> Moved:
+def _furthest(found: ColumnShift, asked: Callable[[Misplaced], ColumnShift]) -> ColumnShift:
     """The same by as many rows more as each gains."""
     while found.gain > 0.0 and abs(found.slip.rows) < max(NUMBERS):
         more = asked(found.slip.further())
@@ -217,14 +217,14 @@ def _furthest(found: Moved, asked: Callable[[Misplaced], Moved]) -> Moved:
     return found
 
 
-def _note(case: Case, found: Moved) -> Note:
+def _note(case: Case, found: ColumnShift) -> Note:
     late, early = OTHER_ROWS
     kind = late if found.slip.way == LATE else early
     numbers = {"rows": found.slip.rows, "gain_nats": found.gain}
     return Note(kind, _names(case, found.slip), numbers, f"perhaps {_in_words(case, found)}")
 
 
-def _in_words(case: Case, found: Moved) -> str:
+def _in_words(case: Case, found: ColumnShift) -> str:
     where = ", or ".join(_standing(case, slip) for slip in (found.slip, *found.alike))
     if found.slip.way == EARLY:
         where += ", or the plant is so late"

@@ -28,7 +28,7 @@ from records.reasons import Note
 
 
 @dataclass(frozen=True)
-class Wiring:
+class ColumnWiring:
     """Another reading of the columns: which of the recorded inputs and outputs each one is, and with which sign."""
 
     what: str
@@ -56,7 +56,7 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
     raise BadInput("columns", where, got, "columns that are what they are called", wiring.remedy)
 
 
-def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
+def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[ColumnWiring, float] | None:
     """Another reading of the columns under which the plant is likelier, as stated and as fitted, and what it gains in nats; None where
     there is none."""
     short = looked_at(case)
@@ -75,7 +75,7 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     return _either(best, alike), gain
 
 
-def _gain_alone(case: Case, wiring: Wiring, fitted: Callable[[Case], Fit], together: float) -> float:
+def _gain_alone(case: Case, wiring: ColumnWiring, fitted: Callable[[Case], Fit], together: float) -> float:
     """What another reading of the columns, which gains so many nats of all logs `together`, gains of each by itself: a slip is one in
     every log, but a start that the model does not foresee looks like one where calmer logs keep the noise that is shared too small."""
     if len(case.flights) == 1:
@@ -109,7 +109,7 @@ def as_stated(case: Case) -> float:
     return likelihood_of(case, with_process_noise(case, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE))))
 
 
-def _either(best: Wiring, alike: Sequence[Wiring]) -> Wiring:
+def _either(best: ColumnWiring, alike: Sequence[ColumnWiring]) -> ColumnWiring:
     """The best reading, told with those that the logs cannot tell from it: of a plant that is the same both ways round, either sign."""
     first = sorted(alike, key=lambda wiring: wiring is not best)
     return replace(
@@ -119,11 +119,11 @@ def _either(best: Wiring, alike: Sequence[Wiring]) -> Wiring:
     )
 
 
-def wirings(case: Case) -> Iterator[Wiring]:
+def wirings(case: Case) -> Iterator[ColumnWiring]:
     """Every single slip of a sign and every pair of columns of one unit in each other's place."""
     model = case.library.bound.model
     inputs, outputs = [str(u) for u in model.inputs], list(model.outputs)
-    straight = Wiring("", "", range(len(inputs)), range(len(outputs)), [1.0] * len(inputs), [1.0] * len(outputs))
+    straight = ColumnWiring("", "", range(len(inputs)), range(len(outputs)), [1.0] * len(inputs), [1.0] * len(outputs))
     for place, name in enumerate(inputs):
         yield replace(_turned(straight, name), input_signs=_one_turned(len(inputs), place))
     for place, name in enumerate(outputs):
@@ -134,11 +134,11 @@ def wirings(case: Case) -> Iterator[Wiring]:
         yield replace(_swapped(straight, outputs[one], outputs[other]), outputs=_exchanged(len(outputs), one, other))
 
 
-def _turned(straight: Wiring, name: str) -> Wiring:
+def _turned(straight: ColumnWiring, name: str) -> ColumnWiring:
     return replace(straight, what=f"{name} has the wrong sign", remedy=f"turn the sign of {name}")
 
 
-def _swapped(straight: Wiring, one: str, other: str) -> Wiring:
+def _swapped(straight: ColumnWiring, one: str, other: str) -> ColumnWiring:
     return replace(straight, what=f"{one} and {other} stand in each other's place", remedy=f"swap {one} and {other}")
 
 
@@ -158,12 +158,12 @@ def _alike(names: Sequence[str]) -> list[tuple[int, int]]:
     return [(one, other) for one, other in combinations(range(len(names)), 2) if units[one] == units[other]]
 
 
-def _rewired(case: Case, wiring: Wiring) -> Case:
+def _rewired(case: Case, wiring: ColumnWiring) -> Case:
     """The case with its columns read the other way."""
     return case.with_flights([_read_otherwise(case, flight, wiring) for flight in case.flights])
 
 
-def _read_otherwise(case: Case, flight: FilteredLog, wiring: Wiring) -> FilteredLog:
+def _read_otherwise(case: Case, flight: FilteredLog, wiring: ColumnWiring) -> FilteredLog:
     filter_input, count = flight.filter_input, len(wiring.outputs)
     places = [*wiring.outputs, *range(count, filter_input.y.shape[1])]
     signs = np.array([*wiring.output_signs, *_rate_signs(case, wiring)])
@@ -181,7 +181,7 @@ def _read_otherwise(case: Case, flight: FilteredLog, wiring: Wiring) -> Filtered
     return replace(flight, filter_input=filter_input, x0=x0, p0=p0)
 
 
-def _rate_signs(case: Case, wiring: Wiring) -> list[float]:
+def _rate_signs(case: Case, wiring: ColumnWiring) -> list[float]:
     """Signs of the states that a log may carry: a rate turns with its angle."""
     model, library = case.library.bound.model, case.library
     outputs = {str(expression): place for place, expression in enumerate(model.outputs.values())}

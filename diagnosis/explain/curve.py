@@ -22,7 +22,7 @@ LOOSE = 1e-6  # of the same, what holds a level and a slope that the plant's own
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class CurveAxis:
     """A quantity that a curve is drawn against or of: its name and its unit."""
 
     name: str
@@ -37,12 +37,12 @@ class Shape:
     the plant's own parameters imitate it.
     """
 
-    depends: Axis
+    depends: CurveAxis
     x: Array
     value: Array
     sd: Array
-    target: Axis
-    times: Axis | None
+    target: CurveAxis
+    times: CurveAxis | None
 
 
 def shape_of(linearisation: Linearisation, by_form: FormScores, suspect: Suspect) -> Shape | None:
@@ -86,7 +86,7 @@ def form_of(by_form: FormScores, suspect: Suspect) -> Form:
     return by_form.forms[max(own, key=lambda index: float(found[index]))]
 
 
-def axis_of_target(linearisation: Linearisation, target: int) -> Axis:
+def axis_of_target(linearisation: Linearisation, target: int) -> CurveAxis:
     """What a form adds to: the rate of a state ("d phi_dot/dt" in rad/s^2), or an output ("phi" in rad)."""
     library = linearisation.case.library
     states = len(library.states)
@@ -94,8 +94,8 @@ def axis_of_target(linearisation: Linearisation, target: int) -> Axis:
     unit = unit_suffix(name)
     stem, shown = name.removesuffix(f"_{unit}"), unit.replace("_s", "/s")
     if target >= states:
-        return Axis(stem, shown)
-    return Axis(f"d {stem}/dt", f"{shown}^2" if shown.endswith("/s") else f"{shown}/s")
+        return CurveAxis(stem, shown)
+    return CurveAxis(f"d {stem}/dt", f"{shown}^2" if shown.endswith("/s") else f"{shown}/s")
 
 
 def _known(linearisation: Linearisation, s: Signals) -> dict[str, Array]:
@@ -113,7 +113,7 @@ def _known(linearisation: Linearisation, s: Signals) -> dict[str, Array]:
     return known
 
 
-def _axes(linearisation: Linearisation) -> dict[str, Axis]:
+def _axes(linearisation: Linearisation) -> dict[str, CurveAxis]:
     """The same signals as axes of a picture."""
     case = linearisation.case
     places = case.library.bound.model.places
@@ -122,7 +122,7 @@ def _axes(linearisation: Linearisation) -> dict[str, Axis]:
         units |= {q: places.axes[axis].length_unit, f"{q}_dot": f"{places.axes[axis].length_unit}/s"}
     units |= {_short(entry): entry.unit for entry in places.inputs.values()}
     units |= {rotor_name(case, name): "rad/s" for name, rotor in places.rotors.items() if rotor.drive is not None}
-    return {name: Axis(name, unit) for name, unit in units.items()}
+    return {name: CurveAxis(name, unit) for name, unit in units.items()}
 
 
 def _short(entry: InputPlace) -> str:
