@@ -75,7 +75,7 @@ class Motor:
 
 
 @dataclass(frozen=True)
-class Channel:
+class ConverterChannel:
     """An input of the converter, by the pin on which it is."""
 
     pin: Pin
@@ -87,7 +87,7 @@ class Converter:
     """The analogue-digital converter of this number, and the inputs of it that a board offers."""
 
     number: int
-    channels: tuple[Channel, ...]
+    channels: tuple[ConverterChannel, ...]
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class Board:
         """Its motors' drivers."""
         return self.main_motor, self.tail_motor
 
-    def channel_of(self, pins: Pins) -> Channel | None:
+    def channel_of(self, pins: Pins) -> ConverterChannel | None:
         """The converter's input on these pins, where there is one."""
         name = None if pins.analogue is None else pins.analogue.pin
         return next((one for one in self.converter.channels if str(one.pin) == name), None)
@@ -176,9 +176,9 @@ class Board:
         return {f"TIM{self.tick.timer}": self.tick.interrupt, f"USART{self.line.usart}": self.line.interrupt}
 
 
-def _channels(**numbers: int) -> tuple[Channel, ...]:
+def _channels(**numbers: int) -> tuple[ConverterChannel, ...]:
     """Inputs of a converter by the names of their pins."""
-    return tuple(Channel(Pin(name[1], int(name[2:])), number) for name, number in numbers.items())
+    return tuple(ConverterChannel(Pin(name[1], int(name[2:])), number) for name, number in numbers.items())
 
 
 # RM0444 by section: memories 2.2.2, flash pages 3.3.1, wait states 3.3.4, writing by 64 bits 3.3.8, clocks 5.2, vectors 12.3, device id

@@ -18,7 +18,7 @@ FIRST, LEAST, MOST = (
 
 
 @dataclass(frozen=True)
-class Schedule:
+class DampingSchedule:
     """mu / `fall` after a better point; mu * `rise` after a refused step, and `quicken` times that for each further one in a row."""
 
     fall: float
@@ -26,9 +26,9 @@ class Schedule:
     quicken: float
 
 
-MARQUARDT = Schedule(fall=10.0, rise=10.0, quicken=1.0)  # Marquardt 1963, nu = 10
+MARQUARDT = DampingSchedule(fall=10.0, rise=10.0, quicken=1.0)  # Marquardt 1963, nu = 10
 # Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05, (2.4), with its largest fall after every better point.
-NIELSEN = Schedule(fall=3.0, rise=2.0, quicken=2.0)
+NIELSEN = DampingSchedule(fall=3.0, rise=2.0, quicken=2.0)
 
 
 class Costed(Protocol):
@@ -42,7 +42,9 @@ class Costed(Protocol):
 Point = TypeVar("Point", bound=Costed)
 
 
-def trials(start: Point, moved: Callable[[Point, float], Point | None], schedule: Schedule) -> Iterator[Point | None]:
+def trials(
+    start: Point, moved: Callable[[Point, float], Point | None], schedule: DampingSchedule
+) -> Iterator[Point | None]:
     """One trial after the other: the better point that it leads to, or None where its step is refused.
 
     `moved` gives the point behind the step (1) from a point under mu, or None where that step is too short to count: then all ends, as it

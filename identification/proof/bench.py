@@ -48,7 +48,7 @@ class FitRow:
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class BenchFlight:
     """A minute of flight below the horizon with both axes kept moving, its true parameters, and a start 30 % off either way."""
 
     bound: BoundPlant
@@ -58,7 +58,7 @@ class Task:
     start: Array
 
 
-def task(bound: BoundPlant, seed: int = 1) -> Task:
+def task(bound: BoundPlant, seed: int = 1) -> BenchFlight:
     """Fly the CE150 from balance at -25 deg: main rotor steps, and a tail rotor that turns the azimuth back at 30 deg."""
     rng = np.random.default_rng(seed)
     balance = equilibrium(bound, np.radians(-25.0))
@@ -76,10 +76,10 @@ def task(bound: BoundPlant, seed: int = 1) -> Task:
             plant.advance(u[k].tolist(), float(t_s[k + 1]), SUBSTEPS)
     truth = bound.p[[coefficient_names(bound.model).index(name) for name in NAMES]]
     start = truth * (1.0 + OFF * rng.choice([-1.0, 1.0], truth.size))
-    return Task(bound, RunLog(log_columns(bound.model), PERIOD_S, "open", t_s, u, y), balance.x0, truth, start)
+    return BenchFlight(bound, RunLog(log_columns(bound.model), PERIOD_S, "open", t_s, u, y), balance.x0, truth, start)
 
 
-def fit(work: Task) -> Array:
+def fit(work: BenchFlight) -> Array:
     """The ten parameters (10,) by the project's way: a quarter of the data in short windows, then the whole log at once."""
     ranges = {
         name: replace(entry, start=float(start))
@@ -102,7 +102,7 @@ def _from_rest(run: Run) -> Run:
     return replace(run, free=tuple(run.free[place] for place in kept), start_sd=run.start_sd[:, kept])
 
 
-def identified(work: Task) -> Array:
+def identified(work: BenchFlight) -> Array:
     """The same parameters (10,) with their intervals, weights and tests, as `twinlaw identify` finds them."""
     numbers = dict(zip(NAMES, work.start.tolist(), strict=True))
     parameters = dict(work.bound.plant.parameters)
@@ -112,7 +112,7 @@ def identified(work: Task) -> Array:
     return np.array([found.value(name) for name in NAMES])
 
 
-def _residual(work: Task) -> Callable[[Array], Array]:
+def _residual(work: BenchFlight) -> Callable[[Array], Array]:
     """Output error over the whole log by one parameter set, relative to the start, on the compiled simulation."""
     places = [coefficient_names(work.bound.model).index(name) for name in NAMES]
 
@@ -126,12 +126,12 @@ def _residual(work: Task) -> Callable[[Array], Array]:
     return residual
 
 
-def _scipy(work: Task) -> Array:
+def _scipy(work: BenchFlight) -> Array:
     found = least_squares(_residual(work), np.ones(len(NAMES)), method="trf", max_nfev=MOST_RUNS // len(NAMES))
     return np.asarray(found.x * work.start)
 
 
-def _lmfit(work: Task) -> Fitted | None:
+def _lmfit(work: BenchFlight) -> Fitted | None:
     lmfit = module("lmfit")
     if lmfit is None:
         return None
@@ -149,10 +149,10 @@ def _lmfit(work: Task) -> Fitted | None:
     return fitted
 
 
-def _differentiated(prepare: Callable[[FitProblem], Fitted | None]) -> Callable[[Task], Fitted | None]:
+def _differentiated(prepare: Callable[[FitProblem], Fitted | None]) -> Callable[[BenchFlight], Fitted | None]:
     """A tool that brings its own simulation and slopes, compiled before the fit is timed."""
 
-    def prepared(work: Task) -> Fitted | None:
+    def prepared(work: BenchFlight) -> Fitted | None:
         names = coefficient_names(work.bound.model)
         places = [names.index(name) for name in NAMES]
         start = work.truth + NEARER * (work.start - work.truth)
@@ -161,7 +161,7 @@ def _differentiated(prepare: Callable[[FitProblem], Fitted | None]) -> Callable[
     return prepared
 
 
-def _at_once(fitted: Callable[[Task], Array]) -> Callable[[Task], Fitted]:
+def _at_once(fitted: Callable[[BenchFlight], Array]) -> Callable[[BenchFlight], Fitted]:
     return lambda work: lambda: fitted(work)
 
 
@@ -170,7 +170,7 @@ EXACT = (
     "SciPy's trust region on its own simulation and exact slopes, compiled before, friction smoothed, whole log; "
     "from a start 10 % off, as from 30 % it ends where it began"
 )
-PEERS: Mapping[str, tuple[Callable[[Task], Fitted | None], str]] = {
+PEERS: Mapping[str, tuple[Callable[[BenchFlight], Fitted | None], str]] = {
     "SciPy least_squares": (_at_once(_scipy), DIFFERENCES),
     "lmfit leastsq": (_lmfit, DIFFERENCES),
     "CasADi": (_differentiated(casadi_fit), EXACT),
@@ -204,5 +204,5 @@ def _timed(work: Fitted) -> tuple[float, Array]:
     return max(time.process_time() - begin, 1e-6), found
 
 
-def _worst(work: Task, found: Array) -> float:
+def _worst(work: BenchFlight, found: Array) -> float:
     return float(np.max(np.abs(found / work.truth - 1.0)))

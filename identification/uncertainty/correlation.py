@@ -15,7 +15,7 @@ PIECE_S = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Score:
+class ParameterScore:
     """One run: information H of its residuals taken as independent, scores of its pieces g (pieces, parameters)."""
 
     H: Array
@@ -36,7 +36,7 @@ class Score:
         return max(float(np.trace(A @ M)) / informed, least) * float(1.0 + 2.0 * np.sqrt(2.0 / pieces))
 
 
-def score(run: Run, starts: Starts, blocks: Sequence[Block], channel: int, piece_s: float = PIECE_S) -> Score:
+def score(run: Run, starts: Starts, blocks: Sequence[Block], channel: int, piece_s: float = PIECE_S) -> ParameterScore:
     """The score of one channel of a run at its optimum, with the windows' starts projected out: J - X C^-1 X^T J."""
     size = blocks[0].by_parameter.shape[1]
     H, pieces = np.zeros((size, size)), [np.zeros((0, size))]  # none of a channel that was never read
@@ -49,7 +49,7 @@ def score(run: Run, starts: Starts, blocks: Sequence[Block], channel: int, piece
         H += J.T @ J
         begins = np.flatnonzero(np.diff(np.floor((block.at_s[mine] - run.t_s[0]) / piece_s), prepend=-1.0))
         pieces.append(np.add.reduceat(J * block.residual[mine, None], begins, axis=0))
-    return Score(H, np.concatenate(pieces))
+    return ParameterScore(H, np.concatenate(pieces))
 
 
 def inflations(point: Point, weak: Array) -> tuple[Array, ...]:

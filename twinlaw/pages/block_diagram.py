@@ -17,7 +17,7 @@ LOOP = "loop"
 
 
 @dataclass(frozen=True)
-class Block:
+class DiagramBlock:
     """A place drawn at the upper left corner (x, y) [px] with its share of the gap."""
 
     place: str
@@ -38,7 +38,7 @@ def block_diagram(model: Model, shares: Mapping[str, float]) -> str:
     edges += _pushed(model, edges)
     parts = [_arrow(blocks[a], blocks[b], main) for a, b, main in edges if b in blocks]
     if places.loop:
-        loop = Block(LOOP, (width - WIDTH) / 2, floor + ROW_GAP, shares.get(LOOP, 0.0))
+        loop = DiagramBlock(LOOP, (width - WIDTH) / 2, floor + ROW_GAP, shares.get(LOOP, 0.0))
         parts += _way_back([blocks[name] for name in columns[-1]], [blocks[name] for name in columns[0]], loop)
         blocks[LOOP] = loop
     height = max(block.y for block in blocks.values()) + HEIGHT + EDGE
@@ -49,14 +49,14 @@ def block_diagram(model: Model, shares: Mapping[str, float]) -> str:
     )
 
 
-def _placed(columns: Sequence[Sequence[str]], shares: Mapping[str, float], margin: float) -> dict[str, Block]:
+def _placed(columns: Sequence[Sequence[str]], shares: Mapping[str, float], margin: float) -> dict[str, DiagramBlock]:
     rows = max(map(len, columns))
     blocks = {}
     for column, names in enumerate(columns):
         top = EDGE + (rows - len(names)) * (HEIGHT + ROW_GAP) / 2
         for row, name in enumerate(names):
             x = margin + column * (WIDTH + COLUMN_GAP)
-            blocks[name] = Block(name, x, top + row * (HEIGHT + ROW_GAP), shares.get(name, 0.0))
+            blocks[name] = DiagramBlock(name, x, top + row * (HEIGHT + ROW_GAP), shares.get(name, 0.0))
     return blocks
 
 
@@ -105,7 +105,7 @@ def _reached(model: Model, variable: Symbol) -> set[Symbol]:
         reached |= more
 
 
-def _box(block: Block) -> str:
+def _box(block: DiagramBlock) -> str:
     share = max(0.0, min(1.0, block.share))
     fill = "#" + "".join(f"{round(pale + share * (lit - pale)):02x}" for pale, lit in zip(PALE, LIT, strict=True))
     border = 2.5 if share >= 0.05 else 1.0
@@ -120,12 +120,12 @@ def _box(block: Block) -> str:
     return box + text
 
 
-def _arrow(a: Block, b: Block, main: bool) -> str:
+def _arrow(a: DiagramBlock, b: DiagramBlock, main: bool) -> str:
     dash = "" if main else ' stroke-dasharray="4 3"'
     return _LINE.format(points=f"{a.x + WIDTH:g},{a.y + HEIGHT / 2:g} {b.x - 2:g},{b.y + HEIGHT / 2:g}", dash=dash)
 
 
-def _way_back(sensors: Sequence[Block], inputs: Sequence[Block], loop: Block) -> list[str]:
+def _way_back(sensors: Sequence[DiagramBlock], inputs: Sequence[DiagramBlock], loop: DiagramBlock) -> list[str]:
     """From every sensor around the column to the controller, and from there around the other column to every input."""
     height = loop.y + HEIGHT / 2
     right, left = sensors[0].x + WIDTH + SIDE, inputs[0].x - SIDE

@@ -51,7 +51,7 @@ OF_A_CHECKOUT = ("test", "soak", "docs", "logs")  # extras that no verb asks for
 
 
 @dataclass(frozen=True)
-class Finding:
+class Requirement:
     """One thing that a verb needs: what was found of it (None: nothing), and how to get it."""
 
     name: str
@@ -88,16 +88,16 @@ def run(chosen: argparse.Namespace) -> int:
     return 2
 
 
-def examine() -> Iterator[Finding]:
+def examine() -> Iterator[Requirement]:
     """Every finding, what all verbs need first."""
-    yield Finding("Python", NEEDED, platform.python_version(), "")
-    yield Finding("system", "see the README: where it runs", f"{platform.system()} {platform.machine()}", "")
-    yield Finding("cache", NEEDED, str(CACHE_DIR), "")
+    yield Requirement("Python", NEEDED, platform.python_version(), "")
+    yield Requirement("system", "see the README: where it runs", f"{platform.system()} {platform.machine()}", "")
+    yield Requirement("cache", NEEDED, str(CACHE_DIR), "")
     yield from packages(_project())
-    yield Finding("C compiler", NEEDED, _compiler(), "make run, or pip install ziglang")
+    yield Requirement("C compiler", NEEDED, _compiler(), "make run, or pip install ziglang")
     for program, (purpose, remedy) in PROGRAMS.items():
-        yield Finding(program, purpose, shutil.which(program), remedy)
-    yield Finding("a serial port", "validate, watch: a board of your own", _ports(), "plug the board in")
+        yield Requirement(program, purpose, shutil.which(program), remedy)
+    yield Requirement("a serial port", "validate, watch: a board of your own", _ports(), "plug the board in")
 
 
 def _project() -> Mapping[str, Any]:
@@ -116,7 +116,7 @@ def _project() -> Mapping[str, Any]:
     return {"dependencies": noted.pop(""), "optional-dependencies": noted}
 
 
-def packages(project: Mapping[str, Any]) -> Iterator[Finding]:
+def packages(project: Mapping[str, Any]) -> Iterator[Requirement]:
     """A finding for each package that pyproject.toml's section names, by the extra that asks for it."""
     yield from _packages(project["dependencies"], NEEDED, "make run")
     for extra, requirements in project["optional-dependencies"].items():
@@ -125,7 +125,7 @@ def packages(project: Mapping[str, Any]) -> Iterator[Finding]:
         yield from _packages(requirements, EXTRAS.get(extra, extra), f"pip install --editable '.[{extra}]'")
 
 
-def _packages(requirements: Sequence[str], purpose: str, remedy: str) -> Iterator[Finding]:
+def _packages(requirements: Sequence[str], purpose: str, remedy: str) -> Iterator[Requirement]:
     for requirement in requirements:
         name = re.split(r"[^A-Za-z0-9._-]", requirement, maxsplit=1)[0]
         if name == "twinlaw":  # an extra that is made of others
@@ -133,9 +133,9 @@ def _packages(requirements: Sequence[str], purpose: str, remedy: str) -> Iterato
         if not PROJECT.is_file():  # installed: there is no checkout to be asked for its extras
             remedy = f"pip install '{requirement}'"
         try:
-            yield Finding(name, purpose, version(name), remedy)
+            yield Requirement(name, purpose, version(name), remedy)
         except PackageNotFoundError:
-            yield Finding(name, purpose, None, remedy)
+            yield Requirement(name, purpose, None, remedy)
 
 
 # What follows imports what may itself be missing.

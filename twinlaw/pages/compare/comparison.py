@@ -68,7 +68,7 @@ class Compared(Built):
 
 
 @dataclass(frozen=True)
-class Spread:
+class SpreadMerits:
     """One axis over the spread plants: how many flights had a step that did not settle, and medians and worst of its merits."""
 
     unsettled: int
@@ -82,11 +82,11 @@ class Spread:
     median_reversals_1_s: float
 
 
-def spread_of(flown: Sequence[Mapping[str, Merit]], axis: str) -> Spread:
+def spread_of(flown: Sequence[Mapping[str, Merit]], axis: str) -> SpreadMerits:
     """The flights of one controller on spread plants, one axis."""
     merits = [entry[axis] for entry in flown]
     times = [merit.settling_s for merit in merits if merit.settling_s is not None]
-    return Spread(
+    return SpreadMerits(
         unsettled=len(merits) - len(times),
         median_iae_rad_s=float(np.median([merit.iae_rad_s for merit in merits])),
         worst_iae_rad_s=max(merit.iae_rad_s for merit in merits),

@@ -22,7 +22,7 @@ from twinlaw.pages.page import Section
 
 
 @dataclass(frozen=True)
-class Proof:
+class ProofReport:
     """Sections of the report, pictures (SVG text) by the number of the paper's figure, and rms differences of both flights by column."""
 
     sections: Sequence[Section]
@@ -37,7 +37,7 @@ def linear_rotors(experiments: Sequence[Experiment], bound: BoundPlant) -> dict[
     }
 
 
-def proof_facts(result: Identification, linear: Mapping[str, Estimate], proof: Proof) -> dict[str, Any]:
+def proof_facts(result: Identification, linear: Mapping[str, Estimate], proof: ProofReport) -> dict[str, Any]:
     """What the report shows beside the estimates, for a program."""
     rotors = {
         kind: {own.channel: asdict(own) for own in against_linear(result.stage_of(KINDS[kind].title), estimate)}
@@ -46,22 +46,22 @@ def proof_facts(result: Identification, linear: Mapping[str, Estimate], proof: P
     return {"against_linear": rotors, "flight_rms": dict(proof.flight_rms)}
 
 
-def proven(result: Identification, truth: BoundPlant | None) -> Proof:
+def proven(result: Identification, truth: BoundPlant | None) -> ProofReport:
     """Searches side by side, and, where the truth is known, what it and the identified plant do."""
     evolution = evolution_plot(result.stages)
     sections = search_sections(result.stages, truth, evolution, (*result.estimates, *result.aids))
     pictures = {"6": evolution} if evolution else {}
     if truth is None:
-        return Proof(sections, pictures, {})
+        return ProofReport(sections, pictures, {})
     with console.stage("the real plant and the identified one"):
         if result.plant.model == "ce150_velagic":
             shown = responses(truth, bind(result.plant))
             plots = figure_plots(shown)
-            return Proof([*sections, figure_section(shown, plots)], pictures | plots, {})
+            return ProofReport([*sections, figure_section(shown, plots)], pictures | plots, {})
         if missing(truth) and not result.plant.design:
-            return Proof(sections, pictures, {})  # no law is designed for such a plant
+            return ProofReport(sections, pictures, {})  # no law is designed for such a plant
         try:
             flights = compare_flights(bind(result.plant), truth)
         except BadInput as error:  # what was identified is not lost with it
-            return Proof([*sections, Section("Flight", (f"Not flown: {error}",))], pictures, {})
-        return Proof([*sections, flight_section(flights)], pictures, flights.rms)
+            return ProofReport([*sections, Section("Flight", (f"Not flown: {error}",))], pictures, {})
+        return ProofReport([*sections, flight_section(flights)], pictures, flights.rms)
