@@ -37,7 +37,7 @@ class Array:
 
 
 @dataclass(frozen=True)
-class Term:
+class FloatTerm:
     """One product of the move of v: its sign, its coefficient's name and expression, and what it multiplies."""
 
     sign: str
@@ -47,7 +47,7 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Axis:
+class FloatAxis:
     """One axis as the template sees it: its names, its numbers in the table, and the C expressions made of them."""
 
     loop: Loop
@@ -61,7 +61,7 @@ class Axis:
     prefilter_gain: float
     prefilter_time_constant_s: float
     feedforward: str
-    terms: tuple[Term, ...]
+    terms: tuple[FloatTerm, ...]
 
     @property
     def name(self) -> str:
@@ -205,7 +205,7 @@ def test_context(table: FlownTable, test: SelfTest) -> dict[str, Any]:
     return {"test": test, "tested": list(zip(table.loops, test.loops, strict=True))}
 
 
-def frame_context(axes: Sequence[Axis], axis_state_fields: Sequence[str]) -> dict[str, Any]:
+def frame_context(axes: Sequence[FloatAxis], axis_state_fields: Sequence[str]) -> dict[str, Any]:
     """What law_frame.c.j2 takes of the table of any float32 law."""
     return {
         "plausible_V": PLAUSIBLE_V,
@@ -243,11 +243,11 @@ _TEMPLATES = {
 }
 
 
-def frame_axis(table: FlownTable, loop: Loop, terms: tuple[Term, ...] = ()) -> Axis:
+def frame_axis(table: FlownTable, loop: Loop, terms: tuple[FloatTerm, ...] = ()) -> FloatAxis:
     """One axis of any float32 table as the frame's template sees it."""
     axis, names = table.axis(loop.axis), Names(loop)
     time_constant_s = axis.prefilter_time_constant_s
-    return Axis(
+    return FloatAxis(
         loop=loop,
         angle=names.angle,
         angle_unit=names.angle_unit,
@@ -268,14 +268,14 @@ def region_text(table: FlownTable) -> str:
     return "0.0f" if table.schedule is None else f"self->{table.schedule.axis}.reference_2_rad"
 
 
-def _terms(loop: Loop, law: AxisLaw) -> list[Term]:
+def _terms(loop: Loop, law: AxisLaw) -> list[FloatTerm]:
     """The terms of the move in their order of summation."""
     terms = []
     for entry in coefficients(law):
         if without_vanishing_powers(entry.polynomial):
             value = _value(array_name(loop, entry.name), entry.polynomial, "schedule_rad")
             holder = "e" if entry.letter == "q" else "self"
-            terms.append(Term("-" if entry.sign < 0 else "+", entry.name, value, f"{holder}->{entry.factor}"))
+            terms.append(FloatTerm("-" if entry.sign < 0 else "+", entry.name, value, f"{holder}->{entry.factor}"))
     return terms
 
 

@@ -20,17 +20,17 @@ _INCLUDE = re.compile(r'(#include ")(?=(?:law|protocol)\.h")')
 
 
 @dataclass(frozen=True)
-class Kind:
+class BuildSystem:
     """Where a build system looks for headers and for sources."""
 
     headers: str
     sources: str
 
 
-KINDS: Mapping[str, Kind] = {
-    "arduino": Kind("src", "src"),
-    "zephyr": Kind("include", "src"),
-    "stm32cube": Kind("Inc", "Src"),
+KINDS: Mapping[str, BuildSystem] = {
+    "arduino": BuildSystem("src", "src"),
+    "zephyr": BuildSystem("include", "src"),
+    "stm32cube": BuildSystem("Inc", "Src"),
 }
 
 

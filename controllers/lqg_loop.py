@@ -14,7 +14,7 @@ from records.table import Polynomial
 Array = NDArray[np.float64]
 
 
-class Scheduled(Protocol):
+class LqgPolynomials(Protocol):
     """Polynomials of (C.11) to (C.13) of controllers/lqg.py."""
 
     @property
@@ -42,7 +42,7 @@ class Scheduled(Protocol):
         """(n + 1,)"""
 
 
-def controller_at(gains: Scheduled, schedule_rad: float) -> LinearController:
+def controller_at(gains: LqgPolynomials, schedule_rad: float) -> LinearController:
     """The law with its coefficients as float32 at schedule_rad [rad], in the state (y, x, held)."""
     a, b, k, l, g = (  # noqa: E741
         np.array([polyval(schedule_rad, np.array(row, np.float32)) for row in rows])

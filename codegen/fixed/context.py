@@ -18,7 +18,7 @@ SCHEDULE = "schedule"  # what the powers of the scheduling angle are called in t
 
 
 @dataclass(frozen=True)
-class Coefficient:
+class FixedCoefficient:
     """One entry of a polynomial's table, and what it adds to the value in the C text (nothing for the constant)."""
 
     word: int
@@ -35,7 +35,7 @@ class Polynomial:
     places: int
     range: Range
     of: str
-    coefficients: tuple[Coefficient, ...]
+    coefficients: tuple[FixedCoefficient, ...]
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ def _product(axis: str, term: FixedTerm[int], last: str) -> str:
 def _polynomial(
     loop: Loop, name: str, p: FixedPolynomial[int], form: PolynomialFormat, of: str, proof: OverflowProof
 ) -> Polynomial:
-    coefficients = [Coefficient(p.constant, form.places, "")]
+    coefficients = [FixedCoefficient(p.constant, form.places, "")]
     for index, (part, shape) in enumerate(zip(p.powers, form.powers, strict=True), start=1):
         factors = f"c[{index}], {of}->x_{part.power}"
         text = {
@@ -170,7 +170,7 @@ def _polynomial(
             2: f"floored(scaled_short({factors}), {part.shift}u)",
             3: f"{2**part.shift} * scaled({factors})" if part.shift else f"scaled({factors})",
         }[part.products]
-        coefficients.append(Coefficient(part.coefficient, shape.places, text))
+        coefficients.append(FixedCoefficient(part.coefficient, shape.places, text))
     return Polynomial(
         name=name,
         unit=coefficient_unit(loop, "u_ff" if name == "u_ff_V" else name[0]),

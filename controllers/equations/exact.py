@@ -11,7 +11,7 @@ from controllers.equations.frame import numbers_of
 from records.law_table import LawTable
 
 
-class Scalars(Float32Scalars):
+class ExactScalars(Float32Scalars):
     """Decisions on single float32 numbers."""
 
     def is_less(self, value: np.float32, other: np.float32) -> bool:
@@ -74,7 +74,7 @@ class EquationLaw:
 class EquationTwin(Float32Twin):
     """The float32 law of a table, operation by operation as its C."""
 
-    scalars: Any = Scalars()
+    scalars: Any = ExactScalars()
     lanes: Any = Lanes()
 
     def __init__(self, equations: AxisEquations, table: LawTable[Any]) -> None:
