@@ -7,7 +7,7 @@
 noise give way to each other at once.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,7 @@ MOST_SCORING_STEPS = 10
 LITTLE_PROMISED = 1.0  # nats: a tenth of what tells two names apart (TAKEN_IN)
 NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
 UNKNOWN_SD = 1e3  # decades: next to nothing is known beforehand
-SHORTENED = 0.1  # of a step whose end the filter does not reach
+STEP_SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
 TWICE = 2.0 * float(np.log(10.0))  # of a decade of a number, that its variance grows by
 
@@ -56,11 +56,11 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
         if promised < LITTLE_PROMISED:
             break
         alone = [single[place] for place in np.argsort(promises)[::-1] if promises[place] > NEARLY_THERE]
-        there = _worth(at, runs, numbers)
-        better = _along(case, at, numbers, step, there, float(g @ step)) or _alone(case, at, numbers, alone, there)
+        tries = _tries(at, numbers, step, alone)
+        better = _better(case, tries, numbers, _worth(at, runs, numbers) + LITTLE_PROMISED)
         if better is None:
             break
-        gained = _worth(*better, numbers) - there
+        gained = _worth(*better, numbers) - _worth(at, runs, numbers)
         at, runs = better
         if promised < NEARLY_THERE and gained > 0.5 * promised:
             break
@@ -71,39 +71,17 @@ def _worth(hypothesis: Hypothesis, runs: Sequence[Pass], numbers: Sequence[Numbe
     return likelihood(runs) - 0.5 * sum(number.away(hypothesis) ** 2 for number in numbers)
 
 
-def _along(
-    case: Case, at: Hypothesis, numbers: Sequence[Number], step: Array, there: float, slope: float
-) -> tuple[Hypothesis, list[Pass]] | None:
-    """The end of a step, with its slopes, where it is worth more than what is `there`; else the top of the parabola that has the `slope`
-    where the step begins and goes through its end, where it promises more. None where neither is."""
-    whole = _moved(at, numbers, _decades(step))
-    runs = _passes(case, whole, numbers)
-    lost = np.inf if runs is None else there - _worth(whole, runs, numbers)
-    if runs is not None and lost < -LITTLE_PROMISED:
-        return whole, runs
-    share = SHORTENED if np.isinf(lost) else slope / (2.0 * (slope + max(lost, 0.0)))
-    if slope <= 0.0 or (np.isfinite(lost) and 0.5 * share * slope < LITTLE_PROMISED):
-        return None
-    return _better(case, _moved(at, numbers, share * _decades(step)), numbers, there)
-
-
-def _alone(
-    case: Case, at: Hypothesis, numbers: Sequence[Number], steps: Sequence[Array], there: float
-) -> tuple[Hypothesis, list[Pass]] | None:
-    """The first of the steps of single numbers that is worth more than what is `there`: where axes stick, slopes lead nowhere together."""
-    tries = (_better(case, _moved(at, numbers, _decades(one)), numbers, there) for one in steps)
-    return next((found for found in tries if found is not None), None)
-
-
 def _better(
-    case: Case, tried: Hypothesis, numbers: Sequence[Number], there: float
+    case: Case, tries: Iterable[Hypothesis], numbers: Sequence[Number], least: float
 ) -> tuple[Hypothesis, list[Pass]] | None:
-    """A try with its slopes, which are asked only where it is worth more than what is `there`."""
-    runs = _passes(case, tried, ())
-    if runs is None or _worth(tried, runs, numbers) <= there + LITTLE_PROMISED:
-        return None
-    sloped = _passes(case, tried, numbers)
-    return None if sloped is None else (tried, sloped)
+    """The first of the tries that is worth more than `least`, with its slopes: of the first these come along, as most steps end there."""
+    for place, tried in enumerate(tries):
+        runs = _passes(case, tried, numbers if place == 0 else ())
+        if runs is None or _worth(tried, runs, numbers) <= least:
+            continue
+        sloped = runs if place == 0 else _passes(case, tried, numbers)
+        return None if sloped is None else (tried, sloped)
+    return None
 
 
 def _passes(case: Case, hypothesis: Hypothesis, numbers: Sequence[Number]) -> list[Pass] | None:
@@ -147,6 +125,14 @@ def _single(hypothesis: Hypothesis, numbers: Sequence[Number], g: Array, informa
     return np.diag(
         [0.0 if _is_blocked(hypothesis, *told) else told[1] for told in zip(numbers, steps.tolist(), strict=True)]
     )
+
+
+def _tries(
+    hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Sequence[Array]
+) -> Iterator[Hypothesis]:
+    """Where the likelihood may be higher: shares of the whole step; and where axes stick, and slopes lead nowhere, each step `alone`."""
+    yield from (_moved(hypothesis, numbers, share * _decades(step)) for share in STEP_SHARES)
+    yield from (_moved(hypothesis, numbers, _decades(one)) for one in alone)
 
 
 def _moved(hypothesis: Hypothesis, numbers: Sequence[Number], decades: Array) -> Hypothesis:

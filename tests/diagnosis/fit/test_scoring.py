@@ -10,7 +10,7 @@ from diagnosis.fit.coloured_noise import _time as time
 from diagnosis.fit.coloured_noise import colours as colours
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.process_noise import LEAST_NOISE, axis_noise, white_noise
-from diagnosis.fit.scoring import LITTLE_PROMISED, TWICE, Number, _along, _linear, _worth, likeliest_numbers
+from diagnosis.fit.scoring import LITTLE_PROMISED, Number, likeliest_numbers
 from diagnosis.fit.scoring import _passes as passes_by
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on, nominal_hypothesis, passes
@@ -52,25 +52,6 @@ def test_noise_that_is_next_to_none_is_found_again() -> None:
     found, there = likeliest_numbers(case, begun, axis_noise(case, begun))
     assert there > value - LITTLE_PROMISED
     assert found.process_noise == pytest.approx(best.process_noise, abs=0.1)
-
-
-def test_a_step_that_is_too_long_ends_at_its_parabolas_top() -> None:
-    # Truth: half a decade below the likeliest noise a step of so many times its promise is worse at its end, and the parabola through what
-    # it gains there has its top between; of a step that promises next to nothing no other end is tried.
-    linearisation = plain_linearisation()
-    case, fitted = linearisation.case, linearisation.fit.hypothesis
-    best, _ = likeliest_numbers(case, fitted, axis_noise(case, fitted))
-    numbers = axis_noise(case, best)
-    begun = replace(best, process_noise=best.process_noise - 0.5)
-    runs = passes_by(case, begun, numbers)
-    assert runs is not None
-    g, _ = _linear(begun, runs, numbers)
-    there, step = _worth(begun, runs, numbers), np.where(np.arange(len(g)) == 0, 30.0, 0.0)
-    assert _along(case, begun, numbers, 1e3 * step, there, LITTLE_PROMISED) is None
-    found = _along(case, begun, numbers, step, there, float(g @ step))
-    assert found is not None
-    assert _worth(*found, numbers) > there + LITTLE_PROMISED
-    assert begun.process_noise[0] < found[0].process_noise[0] < begun.process_noise[0] + np.log1p(TWICE * 30.0) / TWICE
 
 
 def coloured(case: Case, hypothesis: Hypothesis) -> tuple[Hypothesis, list[Number]]:
