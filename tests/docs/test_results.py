@@ -98,6 +98,19 @@ def test_the_genetic_algorithm_s_table_is_what_the_identification_wrote() -> Non
         assert agrees(cells[7], f"100*results.{own}.sd/results.{own}.value")
 
 
+def test_both_pages_that_state_how_fast_the_fit_is_state_one_measurement() -> None:
+    """No file holds it, as it hangs on the machine: the ratios are those of the times, as far as these are written out."""
+    page = (ROOT / "docs" / "identification.md").read_text(encoding="utf-8")
+    told = {tool: (float(cpu), float(ratio), cpu, ratio) for tool, cpu, ratio, *_ in rows("| tool | CPU s", page)}
+    own, _, shown, _ = told["twinlaw, the fit"]
+    others = {tool: entry for tool, entry in told.items() if "identify" not in tool}  # that one's is of another machine
+    for tool, (time, ratio, cpu, written) in others.items():
+        reach = 0.5 * (last_digit(written) + ratio * (last_digit(shown) / own + last_digit(cpu) / time))
+        assert time / own == pytest.approx(ratio, abs=reach), tool
+    scipy, lmfit = told["SciPy `least_squares`"][3], told["lmfit `leastsq`"][3]
+    assert f"{shown} s, {scipy} times faster than SciPy and {lmfit} times faster than lmfit" in SEEDS
+
+
 def test_the_answer_to_a_folder_of_logs_is_what_the_command_prints() -> None:
     shown = fenced("docs/sweeps.md", "text")
     assert shown == [f"{console.table(map(row, result('each')['answers']), HEADING)}\n"]
