@@ -2,6 +2,8 @@
 #ifndef MARGIN_H
 #define MARGIN_H
 
+#include <float.h>
+
 #include "events.h"
 #include "step.h"
 
@@ -156,7 +158,7 @@ static double cubic_root(const cubic *g)
 static bool leave_zero(const moment *at, double noise, double *early, double *late, int axis, int event)
 {
     view then;
-    const double least = 1e-12 * *late; /* of the whole stretch: `late` comes nearer with each trial */
+    const double least = 1e-24 * *late; /* of the whole stretch: `late` comes nearer with each trial */
     for (double trial = 0.5 * *late; trial > least; trial *= 0.5) {
         if (margin_after(at, trial, axis, event, &then) > noise) {
             *early = trial;
@@ -164,6 +166,7 @@ static bool leave_zero(const moment *at, double noise, double *early, double *la
         }
         *late = trial;
     }
+    *late = DBL_TRUE_MIN; /* it is past zero at once */
     return false;
 }
 
