@@ -15,6 +15,15 @@ DEVELOPMENT = "development cases of the sealed generator, seeds 21 and 22"
 DEVELOPMENT_21 = "160 development cases, seed 21"
 
 
+# Everywhere
+BEYOND_CHANCE = Limit(
+    3.0,
+    "standard deviations",
+    "chance goes no further, 0.3 % of estimates apart: two runs told apart, an error's response, a delay of other than whole rows, a "
+    "parameter beyond its spread, which pays in full, as no form a little off makes that cheaper",
+    "EMPS, where a friction that falls with speed fits better with another friction fifteen of them from what is published",
+)
+
 # Readings (filter, library)
 CLIPPED_CHANGE = Limit(
     3.0,
@@ -180,7 +189,10 @@ LEAST_TOLD_SHARE = Limit(
     "spent cases of seeds 900008 to 900011",
 )
 LEAST_LEFT_SHARE = Limit(
-    1e-4, "share of a signature", "one that the plant's coefficients imitate but for this has no score", DEVELOPMENT
+    1e-4,
+    "share of a signature",
+    "one that the plant's coefficients, or forms taken already, imitate but for this has no score",
+    DEVELOPMENT,
 )
 REPLICAS = Count(48, "replicas", "two moments of a Gumbel law need no more", DEVELOPMENT)
 BLIND_SHARE = Limit(0.6, "share of the library", "with more of it unseen the data cannot tell")
@@ -289,19 +301,11 @@ RETUNE_NATS = Limit(4.0, "nats", "that each parameter beyond its spread costs")
 RETUNE_MOST = Count(4, "parameters", "more are no re-tune")
 
 # How probable (decide)
-UNNAMED = Limit(0.95, "probability", "of an unknown effect where a name is forbidden")
 ALIKE_SCALES = Limit(
     3.0,
     "scales",
     "hypotheses of as many effects that are no further apart are told as hardly told apart",
     DEVELOPMENT_21,
-)
-FREE_SPREAD = Limit(
-    3.0,
-    "standard deviations",
-    "a parameter within costs no more than its prior; what leaves it is told, and pays in full, as no form a little off makes that "
-    "cheaper; one that is pulled so far within the spread is tried beyond it",
-    "EMPS, where a friction that falls with speed fits better with another friction fifteen of them from what is published",
 )
 MOST_FORMS = Count(4, "forms", "of one class")
 SAME_PLACE = Limit(
@@ -312,7 +316,6 @@ OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the libra
 MOST_FORESEEN = Count(
     16, "explanations", "by evidence, of which it is asked how they predict: of 58 right names one had a lower rank"
 )
-LEAST_OWN_SHARE = Limit(1e-3, "share of a form", "that must not be a mixture of forms taken already")
 
 # What other logs say (decide)
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
@@ -395,7 +398,6 @@ ASTRAY_S = Limit(1.0, "s", "so long in all a flight may be further from the log 
 LEAST_AT_STAKE = Limit(0.02, "probability", "that a hypothesis must have, and that must be at stake")
 LEADING = Count(3, "hypotheses", "that a run is to tell apart: time")
 SURELY_APART = Limit(5.0, "standard deviations", "more of them tell hardly more")
-ENOUGH_APART = Limit(3.0, "standard deviations", "fewer of them tell nothing apart")
 EFFORT = Limit(0.2, "share of a sure separation", "that an experiment of effort 1 costs")
 BEYOND_SURE = Limit(
     0.05,
@@ -409,13 +411,7 @@ OUTPUT_FLOOR = Limit(3.0, "encoder steps", "less is no outcome to look for")
 
 # What is told beside it (explain)
 IMITATED = Limit(0.995, "share of a signature", "that the plant's own parameters imitate, for a sentence")
-WHOLE_ROWS_SD = Limit(
-    3.0,
-    "standard deviations",
-    "within so many a delay is one of whole rows, which the log may have made: 99.7 % of estimates lie nearer to what they estimate",
-)
 BELIEVED = Limit(0.6, "coherence", "below which a frequency response is not read", "Tischler and Remple (2012)")
-SURE_DEVIATIONS = Limit(3.0, "standard deviations", "that an answer's error must be from none")
 LEAST_POWER_SHARE = Limit(
     1e-3, "share of the power of an output's modelled answers", "an input below is not there to move it"
 )

@@ -74,7 +74,7 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, Exit | None]:
     """
     small, ahead_nats = seen.detection.largest <= decisions.PLAIN_TO_SEE, judged.weighed.ahead_nats
     furthest = float(np.max(np.abs(seen.retuned.fit.hypothesis.theta), initial=0.0))
-    beyond = seen.detection.moved and furthest > decisions.FREE_SPREAD
+    beyond = seen.detection.moved and furthest > decisions.BEYOND_CHANCE
     if beyond or (ahead_nats is None and not small):
         return seen, None
     worth = float(decisions.MATTERS) * readings_of(seen.case)

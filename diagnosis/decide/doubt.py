@@ -30,10 +30,8 @@ class Doubt:
     forbids: bool
 
     def applied(self, weighed: Weighed) -> Weighed:
-        """The probabilities with what is doubted given to the unknown."""
-        if not self.forbids or weighed.unknown >= decisions.UNNAMED:
-            return weighed
-        return weighed.with_unknown(decisions.UNNAMED)
+        """The probabilities, all of it the unknown's where no cause may be named."""
+        return weighed.without_names() if self.forbids else weighed
 
 
 @dataclass(frozen=True)

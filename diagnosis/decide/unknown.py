@@ -64,10 +64,10 @@ def class_gain(by_form: FormScores, members: Sequence[int]) -> float:
     gram = scores.gram[np.ix_(chosen, chosen)] * np.outer(unit, unit)
     score = scores.score[chosen] * unit
     usual = np.maximum(1.0, by_form.null_gain[chosen] / MEAN_GAIN)
-    cost, least, total = decisions.SHAPE_COST + float(np.log(len(members))), decisions.LEAST_OWN_SHARE, 0.0
+    cost, total = decisions.SHAPE_COST + float(np.log(len(members))), 0.0
     for _ in range(min(decisions.MOST_FORMS, len(chosen))):
         left = np.diag(gram)
-        gains = np.where(left > least, 0.5 * score**2 / np.maximum(left, least), 0.0) / usual
+        gains = np.where(left > decisions.LEAST_LEFT_SHARE, 0.5 * score**2 / np.maximum(left, 1e-12), 0.0) / usual
         best = int(np.argmax(gains))
         if gains[best] < cost:
             break

@@ -45,19 +45,9 @@ class Weighed:
         """Whether nothing that has a name is as probable as an unknown effect."""
         return self.unknown > max(self.retune, self.partly + max(self.probabilities, default=0.0))
 
-    def with_unknown(self, share: float) -> "Weighed":
-        """The same with an unknown effect of probability `share`, all else in its old proportions; itself where nothing else is left."""
-        known = sum(self.probabilities) + self.partly + self.retune
-        if known <= 0.0:
-            return self
-        factor = (1.0 - share) / known
-        return replace(
-            self,
-            probabilities=tuple(factor * value for value in self.probabilities),
-            retune=factor * self.retune,
-            partly=factor * self.partly,
-            unknown=share,
-        )
+    def without_names(self) -> "Weighed":
+        """The same where nothing that was tried can be right, be it a name or the plant's own parameters."""
+        return replace(self, probabilities=(0.0,) * len(self.probabilities), partly=0.0, retune=0.0, unknown=1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +136,7 @@ def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, flo
 
 def beyond_spread(entry: FittedHypothesis) -> float:
     """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
-    beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - decisions.FREE_SPREAD, 0.0)
+    beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - decisions.BEYOND_CHANCE, 0.0)
     return 0.5 * float(beyond @ beyond)
 
 

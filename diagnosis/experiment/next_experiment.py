@@ -120,7 +120,7 @@ def _told(
     apart = best.z[first]
     split = {True: list[str](), False: list[str]()}
     for a, b in pairs:
-        split[best.z[a, b] >= decisions.ENOUGH_APART].append(f"{names[a]} from {names[b]}")
+        split[best.z[a, b] >= decisions.BEYOND_CHANCE].append(f"{names[a]} from {names[b]}")
     return {
         "experiment": best.plan.name if split[True] else NO_EXPERIMENT,
         "instruction": best.plan.instruction if split[True] else "no run of this rig's menu tells what is left apart",
@@ -141,7 +141,7 @@ def _outcome(case: Case, trial: Trial, pair: tuple[int, int], names: Sequence[st
     """The expected outcome in one sentence with numbers."""
     a, b = pair
     apart = trial.z[pair]
-    if apart < decisions.ENOUGH_APART:
+    if apart < decisions.BEYOND_CHANCE:
         return (
             f"no run of the menu tells {names[a]} from {names[b]}: the best of them ({trial.plan.name}) leaves them "
             f"{apart:.1f} standard deviations of the noise apart"

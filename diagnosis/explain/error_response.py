@@ -64,7 +64,7 @@ def _of_output(
         for band in np.flatnonzero((believed > decisions.BELIEVED) & (np.array(BANDS_HZ[:-1]) < nyquist_Hz)).tolist():
             error = complex(read[band] @ taps[own])
             sd = float(np.sqrt((read[band] @ covariance[own, own] @ read[band].conj()).real))
-            if abs(error) > decisions.SURE_DEVIATIONS * sd:
+            if abs(error) > decisions.BEYOND_CHANCE * sd:
                 low, high = BANDS_HZ[band : band + 2]
                 yield ErrorResponse(
                     output, u, low, min(high, nyquist_Hz), abs(error), sd, float(np.angle(error)), float(believed[band])

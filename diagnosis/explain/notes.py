@@ -58,12 +58,12 @@ def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     theta = chosen.fit.hypothesis.theta
     p = coefficients(case, case.library.plain, chosen.fit.hypothesis.with_effects({}))  # what cannot be negative is not
-    for index in moved_parameters(case, theta, decisions.FREE_SPREAD):
+    for index in moved_parameters(case, theta, decisions.BEYOND_CHANCE):
         place = int(case.free[index])
         stated = float(case.library.bound.p[place])
         told = {"deviations": float(theta[index]), "value": float(p[place]), "stated": stated}
         yield Note("moved_parameter", names[place], told)
-    for entry in moved_effects(chosen.fit, decisions.FREE_SPREAD):
+    for entry in moved_effects(chosen.fit, decisions.BEYOND_CHANCE):
         symbol, stated = entry.parameter.symbol, entry.stated or 0.0
         sd = case.stated_sd[entry.effect][symbol]
         value = chosen.fit.hypothesis.effects[entry.effect][symbol]

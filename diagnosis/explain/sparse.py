@@ -103,5 +103,5 @@ def _gains(by_form: FormScores, chosen: Sequence[int], members: Sequence[int]) -
         share = np.linalg.solve(gram[np.ix_(chosen, chosen)], cross)
         left, pull = norm - np.sum(cross * share, axis=0), pull - share.T @ score[list(chosen)]
     usual = np.maximum(1.0, by_form.null_gain[list(members)] / MEAN_GAIN)
-    least = decisions.LEAST_OWN_SHARE * norm
+    least = decisions.LEAST_LEFT_SHARE * norm
     return np.where(left > least, 0.5 * pull**2 / np.maximum(left, least), 0.0) / usual

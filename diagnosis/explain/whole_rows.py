@@ -38,7 +38,7 @@ def whole_rows(case: Case, chosen: FittedHypothesis, firmware: Firmware | None) 
 
 def _rows(late: Estimate, period_s: float) -> int:
     """How many whole sample periods an estimate is, 0 where it is none or too unsure to be told from half of one."""
-    rows, within_s = round(late.value / period_s), decisions.WHOLE_ROWS_SD * late.sd
+    rows, within_s = round(late.value / period_s), decisions.BEYOND_CHANCE * late.sd
     sure = within_s < period_s / 2.0 and abs(late.value - rows * period_s) <= within_s
     return rows if sure and rows in COUNTED else 0
 

@@ -34,8 +34,8 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
 
     Only what the fit within the spread had moved is set free: each spread that is taken wider costs evidence.
     """
-    moved = moved_parameters(case, nominal.hypothesis.theta, decisions.FREE_SPREAD)[: decisions.RETUNE_MOST]
-    own = {entry.effect for entry in moved_effects(nominal, decisions.FREE_SPREAD)}
+    moved = moved_parameters(case, nominal.hypothesis.theta, decisions.BEYOND_CHANCE)[: decisions.RETUNE_MOST]
+    own = {entry.effect for entry in moved_effects(nominal, decisions.BEYOND_CHANCE)}
     if not moved and not own:
         return None
     factor = np.ones(len(case.free))
@@ -49,8 +49,10 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
     if found is None:
         return None
     stated = _as_stated(found, factor, own)
-    far = [index for index in moved_parameters(case, stated.hypothesis.theta, decisions.FREE_SPREAD) if index in moved]
-    numbers = [entry for entry in moved_effects(stated, decisions.FREE_SPREAD) if entry.effect in own]
+    far = [
+        index for index in moved_parameters(case, stated.hypothesis.theta, decisions.BEYOND_CHANCE) if index in moved
+    ]
+    numbers = [entry for entry in moved_effects(stated, decisions.BEYOND_CHANCE) if entry.effect in own]
     if not 0 < len(far) + len(numbers) <= decisions.RETUNE_MOST:
         return None
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
