@@ -5,15 +5,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from records.diagnosis import Diagnosis
 from twinlaw.cli import console
 from twinlaw.pages.diagnose.answers import surest_answer
-from twinlaw.pages.diagnose.firmware import beside_firmware, firmware_behind_the_first, firmware_first
+from twinlaw.pages.diagnose.firmware import beside_firmware, firmware_behind_the_first
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import Moved, lowered, moved_in_words, parameters_alone
-from twinlaw.pages.diagnose.why import SMALL, reason_in_words
+from twinlaw.pages.diagnose.verdict import verdict_sentence
 from twinlaw.pages.diagnose.words import (
     alarm_in_words,
     chance,
     class_in_words,
-    doubts_in_words,
     plain_notes,
     shown,
     sized,
@@ -24,25 +23,20 @@ MOST_TOLD = 5
 
 
 def summary_text(diagnosis: Diagnosis, moved: Sequence[Moved] = (), widths: Mapping[str, float] = {}) -> str:
-    """Verdict, ranked effects, places, shrinkage, firmware, notes; `moved` are the plant's own numbers that moved
+    """The verdict in a sentence, ranked effects, places, shrinkage, firmware, notes; `moved` are the plant's own numbers that moved
     most, `widths` see `sized`."""
     return "\n".join(_lines(diagnosis, moved, widths)) + "\n"
 
 
 def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> Iterator[str]:
+    yield verdict_sentence(diagnosis)
     p = diagnosis.false_alarm_probability
-    if doubts_in_words(diagnosis.note_records):
-        yield doubts_in_words(diagnosis.note_records)
-    if firmware_first(diagnosis.firmware):
-        yield firmware_first(diagnosis.firmware)
     if p is None:
         yield diagnosis.verdict
     elif diagnosis.verdict == "gap":
         yield f"gap (chance of so large a gap without one: {chance(p)})"
     else:
         yield f"{diagnosis.verdict}: {alarm_in_words(diagnosis, p)}"
-        if diagnosis.verdict_reason in SMALL:
-            yield reason_in_words(diagnosis)
     if diagnosis.verdict == "gap":
         yield console.table(_rows(diagnosis, moved, widths))
     if diagnosis.unknown.form:

@@ -25,8 +25,8 @@ def test_joint_effects_have_a_line_each_and_their_names_once() -> None:
     assert "<td>gain = 0.50 ± 0.10, zeta = 0.20 ± 0.10</td>" in page
     assert "<td>b = 0.000100 ± 0.000010 N m</td>" in page
     lines = summary_text(told).splitlines()
-    assert "gain 0.50 ± 0.10, zeta 0.20 ± 0.10" in lines[1]
-    assert re.match(r"  with azimuth.coulomb +b 0.000100 ± 0.000010 N m$", lines[2])
+    assert "gain 0.50 ± 0.10, zeta 0.20 ± 0.10" in lines[2]
+    assert re.match(r"  with azimuth.coulomb +b 0.000100 ± 0.000010 N m$", lines[3])
 
 
 def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:

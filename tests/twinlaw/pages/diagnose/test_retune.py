@@ -27,9 +27,9 @@ FURTHEST = (Moved("J_A", 12.04), Moved("K_M", -0.4))
 
 def test_other_parameters_stand_among_the_hypotheses_with_their_probability_and_how_far_they_moved() -> None:
     lines = summary_text(ALONE, FURTHEST).splitlines()
-    assert lines[1].split("  ")[0] == "other parameters alone"
-    assert "0.870" in lines[1]
-    assert "J_A +12.0 sd, K_M -0.4 sd" in lines[1]
+    assert lines[2].split("  ")[0] == "other parameters alone"
+    assert "0.870" in lines[2]
+    assert "J_A +12.0 sd, K_M -0.4 sd" in lines[2]
     page = text_of(ALONE, FURTHEST)
     assert re.search(
         r'other parameters alone</td><td></td><td class="whole">87.0.%</td><td>J_A \+12.0 sd, K_M -0.4 sd', page
