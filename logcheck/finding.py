@@ -1,9 +1,12 @@
 """One thing that is odd about a log: what, where, how bad."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
+from records.log import RunLog
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -46,3 +49,20 @@ class Found:
 def in_words(count: int, thing: str) -> str:
     """ "1 row", "3 rows"."""
     return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
+def beginning(found: Iterable[Found], rows: int) -> Rows:
+    """The rows (n,) with which another log begins."""
+    begins: Rows = np.zeros(rows, bool)
+    for entry in found:
+        begins |= begins if entry.begins is None else entry.begins
+    return begins
+
+
+def without(log: RunLog, found: Sequence[Found]) -> RunLog:
+    """The log with nothing read where readings were found to be none."""
+    y = log.y.copy()
+    for entry in found:
+        if entry.finding.column in log.columns.outputs and entry.excluded is not None:
+            y[entry.excluded, log.columns.outputs.index(entry.finding.column)] = np.nan
+    return replace(log, y=y) if found else log

@@ -12,7 +12,8 @@ import numpy as np
 from logcheck.between import duplicate_findings, plant_pair_findings
 from logcheck.breaks import break_findings
 from logcheck.facts import PlantFacts, plant_facts
-from logcheck.finding import REFUSE, Finding, Found, Rows
+from logcheck.finding import REFUSE, Finding, Found, Rows, beginning, without
+from logcheck.foretold import foretold_findings
 from logcheck.inputs import input_findings
 from logcheck.plant import plant_findings
 from logcheck.stamps import Timing, timing, timing_findings
@@ -116,12 +117,17 @@ def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> I
     yield from own
     if any(entry.finding.severity == REFUSE for entry in own):
         return
-    yield from break_findings(log, name)
+    breaks = list(break_findings(log, name))
+    yield from breaks
     own = list(value_findings(log, name, facts.steps, facts.positions, facts.stops))
-    yield from own
     if any(entry.finding.severity == REFUSE for entry in own):
+        yield from own
         return
-    yield from plant_findings(log, name, bound, facts)
+    begins = beginning((*breaks, *own), len(log.t_s))
+    own += list(plant_findings(log, name, bound, facts))
+    yield from own
+    if not any(entry.finding.severity == REFUSE for entry in own):
+        yield from foretold_findings(without(log, own), name, bound, facts, begins)
     yield from input_findings(log, name, facts.limits)
     if log.source is not None and log.source.simulated:
         span = (float(log.t_s[0]), float(log.t_s[-1]))
@@ -136,12 +142,10 @@ def _other_plant(log: RunLog, name: str, bound: BoundPlant) -> Found:
 
 
 def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts) -> LogIntegrity:
-    excluded, begins = (np.zeros(len(log.t_s), bool) for _ in range(2))
+    excluded = np.zeros(len(log.t_s), bool)
     unread = np.zeros(log.y.shape, bool)
     for entry in found:
         column = entry.finding.column
-        if entry.begins is not None:
-            begins |= entry.begins
         if entry.excluded is not None and column in log.columns.outputs:
             unread[:, log.columns.outputs.index(column)] |= entry.excluded
         elif entry.excluded is not None:
@@ -154,7 +158,7 @@ def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts)
         excitation={} if is_other else excitations(log, facts.steps),
         excluded=excluded,
         unread=unread,
-        begins=begins,
+        begins=beginning(found, len(log.t_s)),
     )
 
 

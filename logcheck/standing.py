@@ -66,13 +66,11 @@ def end_findings(
     """The last stand of each output, where inputs would have moved it; `begins` (n,) and `positions` as for dead stretches."""
     last = int(np.max(np.flatnonzero(begins), initial=0))
     for column in log.columns.outputs:
-        present = last + np.flatnonzero(np.isfinite(log.column(column)[last:]))
-        values, u = log.column(column)[present], log.u[present]
-        moved = np.flatnonzero(np.diff(values) != 0.0)
-        if not moved.size:
+        found = last_stand(log, column, last, steps.get(column, 0.0))
+        if found is None:
             continue
-        begin = int(moved[-1]) + 1
-        least = max(float(np.abs(np.diff(values))[moved].min()), steps.get(column, 0.0))
+        present, begin, least = found
+        values, u = log.column(column)[present], log.u[present]
         if column in positions and _is_at_an_end(values, values[begin], least):
             continue
         waited, usually = _unanswered(values, u, begin)
@@ -86,6 +84,15 @@ def end_findings(
             f"their range, which it answers within {usually + 1} elsewhere: the rig was off, or the sensor was not read; left out"
         )
         yield Found(Finding("dead_end", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
+
+
+def last_stand(log: RunLog, column: str, first: int, step: float) -> tuple[NDArray[np.int64], int, float] | None:
+    """The rows from `first` on in which an output was read, which of them begins its last value, and its least move, the encoder's `step`
+    at least; None where it never moves."""
+    present = first + np.flatnonzero(np.isfinite(log.column(column)[first:]))
+    moves = np.abs(np.diff(log.column(column)[present]))
+    moved = np.flatnonzero(moves)
+    return (present, int(moved[-1]) + 1, max(float(moves[moved].min()), step)) if moved.size else None
 
 
 def off_findings(log: RunLog, name: str, bound: BoundPlant, steps: Mapping[str, float]) -> Iterator[Found]:
@@ -122,6 +129,7 @@ def _still_from(log: RunLog) -> int:
 
 
 def _is_at_an_end(values: Array, value: float, least: float) -> bool:
+    """Whether a value is the greatest or the least, where an axis may be stopped."""
     margin = thresholds.BROKEN_OFF_STEPS * least
     return not values.min() + margin < value < values.max() - margin
 

@@ -1,7 +1,7 @@
 """What the numbers of a log's columns say by themselves: missing, constant, saturated, copied, out of line; and how much moves."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from logcheck import thresholds
 from logcheck.clipped import clipped_findings
 from logcheck.dead import dead_findings, read_again
-from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, beginning, in_words, without
 from logcheck.held import held_findings, stale_findings
 from logcheck.leaps.motion import wrap_findings
 from logcheck.leaps.seams import seam_findings
@@ -92,33 +92,22 @@ def value_findings(
         found for column in log.columns.outputs for found in zero_findings(log, name, column, steps.get(column, 0.0))
     ]
     yield from zeros
-    log = _without(log, zeros)
+    log = without(log, zeros)
     again = read_again(log)
     seams = list(seam_findings(log, name, steps, again, positions))
     yield from seams
-    begins: Rows = np.zeros(len(log.t_s), bool)
-    for found in seams:
-        begins |= begins if found.begins is None else found.begins
+    begins = beginning(seams, len(log.t_s))
     clipped = list(clipped_findings(log, name, steps, begins, positions, stops))
     yield from clipped
-    log = _without(log, clipped)
+    log = without(log, clipped)
     held = list(held_findings(log, name))
     dead = held or list(dead_findings(log, name, steps, begins, positions, again))
     yield from dead
     if not held:
         yield from stale_findings(log, name, steps, positions)
-    yield from end_findings(_without(log, dead), name, steps, begins, positions)
+    yield from end_findings(without(log, dead), name, steps, begins, positions)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
-
-
-def _without(log: RunLog, found: Sequence[Found]) -> RunLog:
-    """The log with nothing read where readings were found to be none."""
-    y = log.y.copy()
-    for entry in found:
-        if entry.finding.column is not None and entry.excluded is not None:
-            y[entry.excluded, log.columns.outputs.index(entry.finding.column)] = np.nan
-    return replace(log, y=y) if found else log
 
 
 def _missing_numbers(log: RunLog, name: str) -> Iterator[Found]:

@@ -3,18 +3,15 @@
 A grid does not tell: steps of 0.2 rad are those of a sensor of 0.2 deg in degrees, and of a coarse sensor in radians.
 """
 
-from collections.abc import Mapping
-
 import numpy as np
 from numpy.typing import NDArray
 
+from logcheck.ahead import read_ahead, states_along, with_axes_as_read
 from logcheck.finding import Array
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.simulate import simulate
 
 AHEAD_S = 0.5  # over which inputs bend a path by more than a coarse sensor rounds it
-SETTLE_S = 2.0  # with the first inputs before a log: rotors turn as these make them
 WINDOWS = 200  # spread over a log: time
 
 
@@ -34,14 +31,12 @@ def misfit(log: RunLog, bound: BoundPlant, column: str, divided_by: float) -> fl
         return np.inf
     rate = _rate(log, y, starts, half)
     straight = y[starts] + rate * rows * log.sample_period_s
-    begun = _begun(log, bound, starts, half, {column: y})
-    u = np.stack([log.u[start : start + rows + 1] for start in starts])
-    times = np.arange(rows + 1) * log.sample_period_s
-    with np.errstate(all="ignore"):
-        runs = simulate(bound, times, begun, u, resolution=np.zeros(len(bound.model.outputs)), keep="y")
-    if runs.y is None:
+    read = {out: log.column(out) for out in bound.model.outputs} | {column: y}
+    begun = {out: (values[starts], _rate(log, values, starts, half)) for out, values in read.items()}
+    x0 = with_axes_as_read(bound, states_along(log, bound)[starts], begun)
+    model = read_ahead(log, bound, column, starts, x0, rows)
+    if model is None:
         return np.inf
-    model = runs.y[:, -1, list(bound.model.outputs).index(column)]
     error, bend = y[starts + rows] - model, y[starts + rows] - straight
     told = np.isfinite(error) & np.isfinite(bend)
     whole = float(np.sum(bend[told] ** 2))
@@ -53,18 +48,6 @@ def _rate(log: RunLog, y: Array, starts: NDArray[np.int64], half: int) -> Array:
     return np.asarray((y[starts + half] - y[starts - half]) / (2 * half * log.sample_period_s))
 
 
-def _begun(log: RunLog, bound: BoundPlant, starts: NDArray[np.int64], half: int, instead: Mapping[str, Array]) -> Array:
-    """States (starts, states) from which the model goes on: positions and speeds as read, some outputs as they stand `instead`."""
-    begun = _states(log, bound)[starts]
-    for axis in bound.model.axes:
-        outputs = [out for out, expression in bound.model.outputs.items() if str(expression) == str(axis.position)]
-        if outputs:
-            y = instead[outputs[0]] if outputs[0] in instead else log.column(outputs[0])
-            begun[:, _index(bound, str(axis.position))] = y[starts]
-            begun[:, _index(bound, str(axis.velocity))] = _rate(log, y, starts, half)
-    return begun
-
-
 def _starts(log: RunLog, y: Array, rows: int, half: int) -> NDArray[np.int64]:
     """Rows from which windows begin: at even times within, every output of them read."""
     every = np.linspace(half, len(y) - rows - 1, WINDOWS).astype(int) if len(y) > rows + half + 1 else np.arange(0)
@@ -72,17 +55,3 @@ def _starts(log: RunLog, y: Array, rows: int, half: int) -> NDArray[np.int64]:
     span = (rows + half) * log.sample_period_s
     even = [k for k in np.unique(every) if abs(log.t_s[k + rows] - log.t_s[k - half] - span) < log.sample_period_s]
     return np.array([k for k in even if read[k - half] and read[k] and read[k + half] and read[k + rows]], dtype=int)
-
-
-def _states(log: RunLog, bound: BoundPlant) -> Array:
-    """All states of a free run with the log's inputs, shape (rows, states): for those that no axis has, rotors and windings."""
-    before = max(1, round(SETTLE_S / log.sample_period_s))
-    u = np.concatenate([np.repeat(log.u[:1], before, axis=0), log.u])
-    with np.errstate(all="ignore"):
-        runs = simulate(bound, np.arange(len(u)) * log.sample_period_s, np.zeros(len(bound.model.states)), u, keep="x")
-    states: Array = np.nan_to_num(np.asarray(runs.x))[before:]
-    return states
-
-
-def _index(bound: BoundPlant, state: str) -> int:
-    return [str(each) for each in bound.model.states].index(state)

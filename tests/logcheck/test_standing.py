@@ -5,10 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from logcheck.facts import plant_facts
+from logcheck.foretold import foretold_findings
 from logcheck.integrity import examine
 from logcheck.standing import end_findings, off_findings
+from logcheck.stretches import part
 from records.log import RunLog
 from sim.bind import BoundPlant
+from tests.logcheck.flight import clean, plant
 from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
 from tests.own_plants import WORKING
 from twinlaw import fly, load
@@ -102,3 +106,15 @@ def test_a_recorder_that_stood_is_told_by_an_axis_that_leaps_with_the_next_comma
     assert found.end_s == pytest.approx(log.t_s[999])
     (looked,) = examine([stood], arm, names=["a"]).logs
     assert np.flatnonzero(looked.begins).tolist() == [1000]
+
+
+def test_an_output_that_is_read_no_more_from_its_rest_on_is_told_by_what_the_plant_foretells_and_a_rest_is_not() -> (
+    None
+):
+    """Truth: psi rests from row 827 to the step of its reference at row 900; in one log it is read no more from there on."""
+    log, facts, none = clean(), plant_facts(plant()), np.zeros(len(clean().t_s), bool)
+    y = log.y.copy()
+    y[827:, 0] = y[827, 0]
+    (found,) = foretold_findings(replace(log, y=y), "a", plant(), facts, none)
+    assert (found.finding.column, found.finding.start_s) == ("psi_rad", pytest.approx(log.t_s[827]))
+    assert list(foretold_findings(part(log, slice(0, 882)), "a", plant(), facts, none[:882])) == []
