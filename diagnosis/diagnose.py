@@ -193,7 +193,9 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     share = first_share(seen.case, weighed)
     chosen, named_rules = chosen_of(weighed, retuned, None if beyond is None else beyond.fitted, share)
     seen = seen.because(*doubts.decisions, *named_rules)
-    if holdout is not None:
+    if holdout is not None and chosen is retuned:
+        chosen = holdout.base
+    elif holdout is not None:
         chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)
         seen, notes = seen.because(*rules), (*notes, *told)
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)

@@ -28,10 +28,11 @@ def every_effect() -> Iterator[Effect]:
     return (effect for model in MODELS.values() for effect in effects_for(model()).values())
 
 
-def redundant(bound: BoundPlant, effect: Effect) -> bool:
-    """Whether a parameter of the plant itself does the same already, so that the effect is nothing but another value of it."""
+def redundant(bound: BoundPlant, effect: Effect, spreads: float) -> bool:
+    """Whether a parameter of the plant itself, within so many of its stated spreads, does what the effect does at its reference size: the
+    effect is then nothing but another value of it. Of a parameter that is known better the effect is a change of the rig."""
     entry = bound.plant.parameters.get(effect.same_as)
-    return entry is not None and any(value != 0.0 for value in (*entry.values, *entry.sds))
+    return entry is not None and spreads * max(entry.sds) >= abs(effect.size.reference)
 
 
 def with_effects(bound: BoundPlant, values: Sizes, *, sd: Sizes | None = None, source: str = "added") -> BoundPlant:

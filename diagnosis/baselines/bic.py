@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.baselines.windows import Array, Windows, errors, windows_of
 from records.diagnosis import Diagnosis, Estimate, Hypothesis, PlaceShare, Unknown
 from records.log import RunLog
@@ -29,7 +30,11 @@ def by_bic(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis:
     Q = np.linalg.qr(J, mode="reduced")[0]
     left = _beside(Q, (error / scale).ravel())
     known = library(bound)
-    names = [name for name, e in known.items() if e.on_equations and e.repeats and not redundant(bound, e)]
+    names = [
+        name
+        for name, e in known.items()
+        if e.on_equations and e.repeats and not redundant(bound, e, decisions.RETUNE_WIDER)
+    ]
     whole = combined(bound, names)
     fits = []
     for effect in (known[name] for name in names):

@@ -85,19 +85,20 @@ class Holdout:
         """By how much a hypothesis predicts these logs better than `base`; by nothing where all that it names happened in other logs."""
         if self._named(hypothesis) and not self._named(self.foreseen(hypothesis)):
             return Score(0.0, 0.0, 0.0)
-        return self.score_of_plant(hypothesis)
-
-    def score_of_plant(self, hypothesis: Hypothesis) -> Score:
-        """The same of the plant that a hypothesis leaves for these logs, whatever it names: its parameters count too."""
         return score(self.errors_foreseen(hypothesis), self._errors(self.base.fit.hypothesis))
 
-    def score_over_stated(self, hypothesis: Hypothesis) -> Score:
-        """By how much a hypothesis predicts these logs better than the plant as stated: `base` has moved its parameters too."""
-        return score(self.errors_foreseen(hypothesis), self._errors(self.stated))
+    def score_of_plant(self, chosen: FittedHypothesis) -> Score:
+        """The same of the plant that is left for these logs, whatever is named: its parameters count too. Parameters alone are held against
+        those that are stated, as `base` has moved its own."""
+        return score(self.errors_foreseen(chosen.fit.hypothesis), self._errors(self._rival(chosen)))
 
-    def score_of_longest(self, hypothesis: Hypothesis) -> Score:
+    def score_of_longest(self, chosen: FittedHypothesis) -> Score:
         """The same of predictions over the longest horizon alone."""
-        return score(self.errors_foreseen(hypothesis).of_longest(), self._errors(self.base.fit.hypothesis).of_longest())
+        own, other = self.errors_foreseen(chosen.fit.hypothesis), self._errors(self._rival(chosen))
+        return score(own.of_longest(), other.of_longest())
+
+    def _rival(self, chosen: FittedHypothesis) -> Hypothesis:
+        return self.base.fit.hypothesis if chosen.effects else self.stated
 
     def _named(self, hypothesis: Hypothesis) -> list[str]:
         """The effects of a hypothesis that `base` lacks, noise apart."""
@@ -167,7 +168,7 @@ def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note,
     """What the logs say of a hypothesis, of the plant's parameters alone beside those that are stated; what is to be told of that, and its
     records."""
     of = " + ".join(first.effects) or "parameters"
-    told = (holdout.score if first.effects else holdout.score_over_stated)(first.fit.hypothesis)
+    told = holdout.score(first.fit.hypothesis) if first.effects else holdout.score_of_plant(first)
     sure, left = is_surely_better(told), max(told.misfit, 0.0)
     missing = sure and left > told.gain
     outcome, further = "surely better" if sure else "not surely better", "something else is missing"
@@ -194,8 +195,8 @@ def added(
     """What is to be added: what has more than half of all `probability` unless the hold-out is predicted worse by it, over all horizons or
     surely over the longest, for which a model is used; what has less only where it is predicted better, and over the longest no worse;
     else the plant without it, as is told then."""
-    told, of = holdout.score_of_plant(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
-    longest = holdout.score_of_longest(first.fit.hypothesis)
+    told, of = holdout.score_of_plant(first), " + ".join(first.effects) or "parameters"
+    longest = holdout.score_of_longest(first)
     likely = probability > decisions.LIKELIER_THAN_NOT
     least = -float(decisions.MATTERS) if likely else float(decisions.MATTERS)
     lowest = -max(float(decisions.MATTERS), decisions.SURELY * longest.sd) if likely else 0.0

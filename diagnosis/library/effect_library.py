@@ -18,6 +18,7 @@ import sympy
 from numpy.typing import NDArray
 
 import sim
+from diagnosis import decisions
 from diagnosis.filter.kalman import Filter, build_filter, equations_text, open_filter
 from diagnosis.library.filter_state import with_filter_state
 from diagnosis.library.reading_noise import switch_of, with_reading_noise
@@ -78,9 +79,10 @@ class EffectLibrary:
 
     @cached_property
     def candidates(self) -> tuple[str, ...]:
-        """Effects that name a gap and are more than another name or another value of one of the plant's own coefficients."""
+        """Effects that name a gap and are more than another name or another value of one of the plant's own coefficients, as a re-tune
+        beyond its spread would have it."""
         gaps = (n for n, effect in self.effects.items() if effect.names_a_gap and effect.repeats and not effect.copy_of)
-        return tuple(name for name in gaps if not redundant(self.bound, self.effects[name]))
+        return tuple(name for name in gaps if not redundant(self.bound, self.effects[name], decisions.RETUNE_WIDER))
 
     @cached_property
     def states(self) -> tuple[str, ...]:

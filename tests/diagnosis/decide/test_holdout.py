@@ -210,8 +210,8 @@ def test_what_predicts_a_second_surely_worse_is_not_added_however_well_it_predic
             holdout.base.fit.hypothesis: Errors(before, np.zeros(1), nothing),
         }
     )
-    assert holdout.score_of_plant(hypothesis).gain > 3.0
-    assert holdout.score_of_longest(hypothesis).gain == pytest.approx(-0.5 * np.log(last))
+    assert holdout.score_of_plant(hardly).gain > 3.0
+    assert holdout.score_of_longest(hardly).gain == pytest.approx(-0.5 * np.log(last))
     chosen, notes, rules = added(holdout, hardly, probability)
     assert (chosen is hardly) == (not told)
     assert [note.kind for note in notes] == told

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from records.diagnosis import Diagnosis, Hypothesis
+from records.reasons import Note
 from records.text.uncertain import to_sd
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
@@ -12,7 +13,7 @@ from twinlaw.pages.diagnose.words import doubts_in_words, listed, percent, plain
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
 LEAST_TOLD = 0.01  # share of the error below which its going is not told
 WORTH_A_THOUGHT = 0.05  # from which the next best is told
-MOVED = "moved_parameter"  # kind of note
+MOVED = ("moved_parameter", "moved_effect")  # kinds of notes
 _NOT_TOLD = {"no gap": "No gap is told", "cannot tell": "Whether the plant file lacks anything cannot be told"}
 
 
@@ -72,11 +73,18 @@ def _rival(diagnosis: Diagnosis, chosen: Sequence[Hypothesis]) -> str:
     return f" Next comes {name} ({percent(probability)}){tells}."
 
 
+def _moved(note: Note) -> str:
+    """ "J_A = 0.005 (the file states 0.004)"."""
+    symbol, numbers = note.numbers.get("symbol"), note.numbers
+    name = note.subject if symbol is None else f"{symbol} of the {words(note.subject)}"
+    return f"{name} = {numbers['value']:.4g} (the file states {numbers['stated']:.4g})"
+
+
 def _nothing_added(diagnosis: Diagnosis) -> str:
     """The verdict on a gap for which no effect was added: other parameters, an effect that did not help, or none that fits."""
     unknown, first = diagnosis.unknown, diagnosis.effects[0] if diagnosis.effects else None
     retuned = parameters_alone(diagnosis)
-    moved = [note.subject for note in diagnosis.note_records if note.kind == MOVED]
+    moved = [_moved(note) for note in diagnosis.note_records if note.kind in MOVED]
     if moved and retuned > max(unknown.probability, first.probability if first else 0.0):
         return f"The rig has other parameters than the plant file states, and nothing else is missing: {listed(moved)}."
     where = f" in {words(unknown.place)}" if unknown.place else ""

@@ -11,6 +11,9 @@ from twinlaw.pages.diagnose.summary import summary_text
 from twinlaw.pages.diagnose.verdict import verdict_sentence
 
 MOVED = Note("moved_parameter", "J_A", {"deviations": 12.0, "value": 0.0213, "stated": 0.0133})
+STIFFER = Note(
+    "moved_effect", "azimuth.cable_spring", {"symbol": "k", "deviations": 25.8, "value": 0.0045, "stated": 0.003}
+)
 
 
 @pytest.mark.parametrize(
@@ -37,7 +40,11 @@ MOVED = Note("moved_parameter", "J_A", {"deviations": 12.0, "value": 0.0213, "st
         ({"found": (), "effects": (), "unknown": Unknown(0.97)}, "no effect of the library can be named"),
         (
             {"found": (), "effects": (), "unknown": Unknown(0.01), "note_records": (MOVED,)},
-            "nothing else is missing: J_A.",
+            "nothing else is missing: J_A = 0.0213 (the file states 0.0133).",
+        ),
+        (
+            {"found": (), "effects": (), "unknown": Unknown(0.01), "note_records": (STIFFER,)},
+            "nothing else is missing: k of the cable spring of the azimuth = 0.0045 (the file states 0.003).",
         ),
     ],
 )
