@@ -14,8 +14,8 @@ from types import MappingProxyType
 import numpy as np
 
 from logcheck import thresholds
-from logcheck.dead import evenness, hardly_repeats, is_set_going, runs
-from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
+from logcheck.finding import EXCLUDE, Finding, Found, Rows
+from logcheck.stands import Readings, evenness, hardly_repeats, is_set_going, readings_of, runs
 from records.log import RunLog
 from records.text.units import unit_of
 
@@ -27,18 +27,6 @@ class _End:
     level: float
     how: str
     stands: list[tuple[int, int]]
-
-
-@dataclass(frozen=True, eq=False)
-class _Read:
-    """The readings of one column: times (n,), values (n,), inputs (n, inputs), rows (n,) with which another log begins."""
-
-    t_s: Array
-    values: Array
-    u: Array
-    begins: Rows
-    period_s: float
-    has_mass: bool
 
 
 def clipped_findings(
@@ -55,9 +43,7 @@ def clipped_findings(
     `positions` are outputs that a mass moves, `stops` [rad] where it is stopped: there no sensor need end.
     """
     for column in log.columns.outputs:
-        present = np.flatnonzero(np.isfinite(log.column(column)))
-        t_s, values = log.t_s[present], log.column(column)[present]
-        read = _Read(t_s, values, log.u[present], begins[present], log.sample_period_s, column in positions)
+        read = readings_of(log, column, begins, positions)
         low, high = stops.get(column, (-np.inf, np.inf))
         margin = thresholds.BEYOND_STOP_rad
         ends = [end for end in _ends(read, steps.get(column, 0.0)) if low + margin < end.level < high - margin]
@@ -65,14 +51,14 @@ def clipped_findings(
             continue
         unread: Rows = np.zeros(len(log.t_s), bool)
         for end in ends:
-            unread[present[values == end.level]] = True
-        told = "; ".join(_in_words(end, t_s, values, column) for end in ends)
+            unread[read.rows[read.values == end.level]] = True
+        told = "; ".join(_in_words(end, read, column) for end in ends)
         span = (float(log.t_s[unread][0]), float(log.t_s[unread][-1]))
         sentence = f"{told}: the axis was under way before and behind, and the sensor's range ends there; left out"
         yield Found(Finding("clipped_sensor", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
 
 
-def _ends(read: _Read, step: float) -> Iterator[_End]:
+def _ends(read: Readings, step: float) -> Iterator[_End]:
     stands = runs(read.values) if len(read.values) else []
     moves = np.abs(np.diff(read.values))
     if not moves.any():
@@ -89,25 +75,23 @@ def _ends(read: _Read, step: float) -> Iterator[_End]:
             yield _End(level, how, own)
 
 
-def _evenness(read: _Read, first: int, last: int, least: float) -> float:
+def _evenness(read: Readings, first: int, last: int, least: float) -> float:
     """How evenly the column leaves a stand, and comes to it where it may leave it as it likes; 0 where it is not under way on a side."""
-    way = max(thresholds.WAY_ROWS, round(thresholds.WAY_S / read.period_s))
-    limits = thresholds.CUT_OFF_STEPS * least, min(last - first + 1, max(thresholds.CUT_OFF_ROWS, way))
-    comes = evenness(read.t_s, read.values, first, -1, *limits, read.begins)
-    leaves = evenness(read.t_s, read.values, last + 1, 1, *limits, read.begins)
-    as_it_likes = not read.has_mass or is_set_going(read.u, first, last, way, np.ptp(read.u, axis=0))
+    limits = thresholds.CUT_OFF_STEPS * least, min(last - first + 1, max(thresholds.CUT_OFF_ROWS, read.way))
+    comes, leaves = evenness(read, first, -1, *limits), evenness(read, last + 1, 1, *limits)
+    as_it_likes = not read.has_mass or is_set_going(read.u, first, last, read.way, np.ptp(read.u, axis=0))
     return min(comes, leaves) if as_it_likes or not comes else leaves
 
 
-def _in_words(end: _End, t_s: Array, values: Array, column: str) -> str:
+def _in_words(end: _End, read: Readings, column: str) -> str:
     spans = ", ".join(
-        f"{t_s[first]:.6g} s to {t_s[last]:.6g} s" for first, last in end.stands[: thresholds.TIMES_SHOWN]
+        f"{read.t_s[first]:.6g} s to {read.t_s[last]:.6g} s" for first, last in end.stands[: thresholds.TIMES_SHOWN]
     )
     more = (
         f" and {len(end.stands) - thresholds.TIMES_SHOWN} times more"
         if len(end.stands) > thresholds.TIMES_SHOWN
         else ""
     )
-    share = float(np.mean(values == end.level))
+    share = float(np.mean(read.values == end.level))
     level = f"{end.level:.5g} {unit_of(column) or ''}".rstrip()
     return f"{column} never {end.how} {level}, where it stands in {share:.1%} of its rows, from {spans}{more}"

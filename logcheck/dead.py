@@ -14,6 +14,7 @@ import numpy as np
 
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
+from logcheck.stands import Readings, evenness, hardly_repeats, is_set_going, moves_far, readings_of, runs
 from records.log import RunLog
 from records.text.units import unit_of
 
@@ -56,10 +57,9 @@ def dead_findings(
     """
     for column in log.columns.outputs:
         step = steps.get(column, 0.0)
-        present = np.flatnonzero(np.isfinite(log.column(column)))
-        t_s, values = log.t_s[present], log.column(column)[present]
-        has_mass = column in positions
-        stands = list(_dead(t_s, values, log.u[present], log.sample_period_s, step, begins[present], has_mass))
+        read = readings_of(log, column, begins, positions)
+        t_s, present = read.t_s, read.rows
+        stands = list(_dead(read, step))
         if not stands:
             continue
         unread: Rows = np.zeros(len(log.t_s), bool)
@@ -67,7 +67,7 @@ def dead_findings(
             # The first reading of a stand into which nothing jumps is the last true one.
             unread[present[stand.first + (stand.jump_in == 0.0) : stand.last + 1]] = True
         span = (float(t_s[stands[0].first]), float(t_s[stands[-1].last]))
-        told = [_in_words(stand, t_s, values, column, step) for stand in stands[: thresholds.TIMES_SHOWN]]
+        told = [_in_words(stand, read, column, step) for stand in stands[: thresholds.TIMES_SHOWN]]
         more = (
             f"; and so {len(stands) - thresholds.TIMES_SHOWN} times more, last until {span[1]:.6g} s"
             if len(stands) > thresholds.TIMES_SHOWN
@@ -85,7 +85,7 @@ def dead_findings(
 
 def _all_stood(u: Array, first: int, last: int) -> bool:
     """Whether every input (n, inputs) stood with an output, and one moves far in the row in which it is read again: none was written."""
-    return bool(np.all(u[first : last + 1] == u[first])) and _moves_far(u[last : last + 2], np.ptp(u, axis=0))
+    return bool(np.all(u[first : last + 1] == u[first])) and moves_far(u[last : last + 2], np.ptp(u, axis=0))
 
 
 def amount(move: float, column: str, step: float) -> str:
@@ -93,8 +93,9 @@ def amount(move: float, column: str, step: float) -> str:
     return f"{move / step:.0f} steps" if step > 0.0 else f"{move:.3g} {unit_of(column) or ''}".rstrip()
 
 
-def _in_words(stand: Stand, t_s: Array, values: Array, column: str, step: float) -> str:
-    span = f"at {values[stand.first]:.4g} from {t_s[stand.first]:.6g} s to {t_s[stand.last]:.6g} s"
+def _in_words(stand: Stand, read: Readings, column: str, step: float) -> str:
+    t_s = read.t_s
+    span = f"at {read.values[stand.first]:.4g} from {t_s[stand.first]:.6g} s to {t_s[stand.last]:.6g} s"
     return f"{span} ({', '.join(_ways(stand, column, step))})"
 
 
@@ -110,20 +111,17 @@ def _ways(stand: Stand, column: str, step: float) -> Iterator[str]:
         yield "where it hardly ever reads the same twice"
 
 
-def _dead(
-    t_s: Array, values: Array, u: Array, period_s: float, step: float, begins: Rows, has_mass: bool
-) -> Iterator[Stand]:
+def _dead(read: Readings, step: float) -> Iterator[Stand]:
     """Stands of at least DEAD_ROWS rows into which or out of which the column leaps, by far more than it moves there, though its axis was
-    under way, or the inputs u (n, inputs) moved it; of a mass also those on whose sides it goes on as before."""
-    moves = np.where(begins[1:], 0.0, np.diff(values))
+    under way, or the inputs moved it; of a mass also those on whose sides it goes on as before."""
+    t_s, values, u, way = read.t_s, read.values, read.u, read.way
+    moves = np.where(read.begins[1:], 0.0, np.diff(values))
     own = np.abs(moves[moves != 0.0])
     if not own.size:
         return
     least, usual_u = max(float(own.min()), step), np.ptp(u, axis=0)
-    moves = (
-        moves * period_s / np.maximum(np.diff(t_s), period_s)
-    )  # as far as in one sample, where rows lie further apart
-    way = max(thresholds.WAY_ROWS, round(thresholds.WAY_S / period_s))
+    # As far as in one sample, where rows lie further apart.
+    moves = moves * read.period_s / np.maximum(np.diff(t_s), read.period_s)
     stands = runs(values)
     never_repeats = hardly_repeats(values, stands)
     for begin, end in stands:
@@ -138,15 +136,15 @@ def _dead(
         leaps_in = _is_leap(into, before[-thresholds.AROUND_STAND_ROWS :], least)
         leaps_out = _is_leap(out, after[: thresholds.AROUND_STAND_ROWS], least)
         arrives = _is_under_way(np.abs(arrived), least)
-        until = end + (2 if has_mass else 1)  # no mass answers a command in the row that gives it
-        driven = _moves_far(u[begin:until], usual_u)
+        until = end + (2 if read.has_mass else 1)  # no mass answers a command in the row that gives it
+        driven = moves_far(u[begin:until], usual_u)
         goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
         set_going = is_set_going(u, begin, end, way, usual_u)
-        starts = not has_mass and set_going and not arrives  # a rate leaves its rest by its largest move
+        starts = not read.has_mass and set_going and not arrives  # a rate leaves its rest by its largest move
         leaps = (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (
             leaps_out and goes_on and not starts
         )
-        cut_off = has_mass and not leaps and _is_cut_off(t_s, values, begin, end, way, least, begins, set_going)
+        cut_off = read.has_mass and not leaps and _is_cut_off(read, begin, end, least, set_going)
         if cut_off and not arrives:  # so dense are the rows that a few of them tell no speed
             arrived, arrives = moves[max(0, begin - way) : begin], True
         if leaps or cut_off:
@@ -155,76 +153,20 @@ def _dead(
             yield Stand(begin, end, abs(into) * leaps_in, abs(out) * leaps_out, speed)
 
 
-def is_set_going(u: Array, begin: int, end: int, way: int, usual_u: Array) -> bool:
-    """Whether an input (n, inputs) moves far in the last `way` rows of the stand begin..end, and not in those before."""
-    return _moves_far(u[max(begin, end - way) : end + 2], usual_u) and not _moves_far(u[begin : end - way + 1], usual_u)
-
-
-def _moves_far(u: Array, usual_u: Array) -> bool:
-    """Whether an input (n, inputs) moves by DRIVEN_SHARE of its range in the log."""
-    return len(u) > 0 and bool(np.any(np.ptp(u, axis=0) > thresholds.DRIVEN_SHARE * usual_u))
-
-
-def _is_cut_off(
-    t_s: Array, values: Array, begin: int, end: int, way: int, least: float, begins: Rows, set_going: bool
-) -> bool:
+def _is_cut_off(read: Readings, begin: int, end: int, least: float, set_going: bool) -> bool:
     """Whether the column is under way up to the stand begin..end, and from it on, as no axis is that comes to rest and leaves it.
 
     One that an input has `set_going` leaves it as it likes.
     """
-    margin = thresholds.BROKEN_OFF_STEPS * least
+    values, way, margin = read.values, read.way, thresholds.BROKEN_OFF_STEPS * least
     if not values.min() + margin < values[begin] < values.max() - margin:
         return False  # at an end of its range an axis may be stopped
     rows = end - begin + 1
     both = thresholds.CUT_OFF_STEPS * least, min(rows, max(thresholds.CUT_OFF_ROWS, way))
     alone = thresholds.CUT_OFF_ALONE_STEPS * least, min(rows // 2, way)
-    comes = [evenness(t_s, values, begin, -1, *limits, begins) for limits in (both, alone)]
-    goes = evenness(t_s, values, end + 1, 1, *both, begins)
+    comes = [evenness(read, begin, -1, *limits) for limits in (both, alone)]
+    goes = evenness(read, end + 1, 1, *both)
     return (not set_going and min(comes[0], goes) > thresholds.EVEN) or comes[1] > thresholds.EVEN
-
-
-def evenness(t_s: Array, values: Array, at: int, way: int, far: float, most_rows: int, begins: Rows) -> float:
-    """How fast a column is in the rows next to `at` as a share of how fast it is in as many rows beyond them; 0 for none.
-
-    The rows are as few as it takes to go `far`, `most_rows` at most.
-    """
-    if not 0 <= at < len(values):
-        return 0.0
-    ahead = values[at : at + most_rows + 1] if way > 0 else values[max(0, at - most_rows) : at + 1][::-1]
-    reached = np.flatnonzero(np.abs(ahead - values[at]) >= far)
-    rows = int(reached[0]) if reached.size else 0
-    beyond = at + 2 * way * rows
-    if not rows or not 0 <= beyond < len(values) or begins[min(at, beyond) + 1 : max(at, beyond) + 1].any():
-        return 0.0
-    places = [at, at + way * rows, beyond]
-    near, further = np.diff(values[places]) / np.diff(t_s[places])
-    return float(near / further) if near * further > 0.0 else 0.0
-
-
-def runs(values: Array) -> list[tuple[int, int]]:
-    """First and last rows of one value that is kept for DEAD_ROWS."""
-    changed = np.flatnonzero(np.diff(values) != 0.0)
-    first, last = np.concatenate([[0], changed + 1]), np.concatenate([changed, [len(values) - 1]])
-    long = last - first >= thresholds.DEAD_ROWS - 1
-    return list(zip(first[long].tolist(), last[long].tolist(), strict=True))
-
-
-def hardly_repeats(values: Array, stands: list[tuple[int, int]]) -> bool:
-    """Whether a sensor is so noisy that it hardly ever reads the same twice outside the stands, first and last rows."""
-    return _repeats(values, stands) < thresholds.SELDOM and _is_noisy(np.diff(values))
-
-
-def _repeats(values: Array, stands: list[tuple[int, int]]) -> float:
-    """Share of the readings that repeat the one before, outside stands."""
-    same = np.diff(values) == 0.0
-    for first, last in stands:
-        same[first:last] = False
-    return float(same.mean())
-
-
-def _is_noisy(moves: Array) -> bool:
-    """Whether readings go to and fro, as those of a noisy sensor, and not those of an encoder."""
-    return float(np.mean(moves[1:] * moves[:-1] < 0.0)) > thresholds.TO_AND_FRO
 
 
 def _is_leap(move: float, near: Array, least: float) -> bool:

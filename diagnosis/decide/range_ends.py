@@ -19,8 +19,8 @@ from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from logcheck import thresholds
-from logcheck.dead import runs
 from logcheck.facts import plant_facts
+from logcheck.stands import runs
 from logcheck.stretches import part
 from records.log import RunLog
 from records.reasons import Note

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from logcheck import thresholds
-from logcheck.dead import amount, runs
+from logcheck.dead import amount
 from logcheck.finding import Array, Finding, Found, Rows
+from logcheck.stands import runs
 from records.log import RunLog
 from sim.columns import reference_name
 
