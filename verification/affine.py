@@ -30,20 +30,20 @@ class Tracked:
     symbols: Iterator[int] = field(repr=False, compare=False)
 
     def __add__(self, other: "Tracked") -> "Tracked":
-        return self._rounded(self.value + other.value, _combined(self.errors, 1, other.errors, 1))
+        return self._rounded(self.value + other.value, combined(self.errors, 1, other.errors, 1))
 
     def __sub__(self, other: "Tracked") -> "Tracked":
-        return self._rounded(self.value - other.value, _combined(self.errors, 1, other.errors, -1))
+        return self._rounded(self.value - other.value, combined(self.errors, 1, other.errors, -1))
 
     def __mul__(self, other: "Tracked") -> "Tracked":
-        errors = _combined(self.errors, other.value, other.errors, self.value)
+        errors = combined(self.errors, other.value, other.errors, self.value)
         second_order = self.error * other.error
         return self._rounded(self.value * other.value, errors, second_order)
 
     @property
     def error(self) -> float:
         """Upper bound of |float32 number - real number|."""
-        return upper_bound(sum((abs(c) for c in self.errors.values()), arb(0)))
+        return size_of(self.errors)
 
     @property
     def magnitude(self) -> float:
@@ -55,7 +55,7 @@ class Tracked:
         return Tracked(value, {next(self.symbols): arb(error)} if error else {}, self.symbols)
 
     def _rounded(self, value: arb, errors: dict[int, arb], more: float = 0.0) -> "Tracked":
-        before = upper_bound(value) + upper_bound(sum((abs(c) for c in errors.values()), arb(more)))
+        before = upper_bound(value) + size_of(errors, more)
         if before == 0.0:
             return Tracked(value, {}, self.symbols)
         own = half_ulp(math.nextafter(before, math.inf)) + more
@@ -134,7 +134,13 @@ def upper_bound(ball: arb) -> float:
     return math.nextafter(largest, math.inf) if largest else 0.0
 
 
-def _combined(one: Mapping[int, arb], by: arb | int, other: Mapping[int, arb], other_by: arb | int) -> dict[int, arb]:
+def size_of(errors: Mapping[int, arb], more: float = 0.0) -> float:
+    """A float not below any |sum_k c_k eps_k| of an error form, and `more`."""
+    return upper_bound(sum((abs(c) for c in errors.values()), arb(more)))
+
+
+def combined(one: Mapping[int, arb], by: arb | int, other: Mapping[int, arb], other_by: arb | int) -> dict[int, arb]:
+    """The error form `by` one + `other_by` other."""
     errors = {symbol: c * by for symbol, c in one.items()}
     for symbol, c in other.items():
         errors[symbol] = errors[symbol] + c * other_by if symbol in errors else c * other_by

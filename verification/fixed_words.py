@@ -12,7 +12,7 @@ from typing import Protocol, TypeVar
 from flint import arb
 
 from codegen.fixed.arithmetic import Words
-from verification.affine import upper_bound
+from verification.affine import combined, size_of, upper_bound
 
 W = TypeVar("W")
 
@@ -31,15 +31,15 @@ class TrackedWord:
     def __add__(self, other: "TrackedWord | int") -> "TrackedWord":
         if isinstance(other, int):  # what the law adds to a word before it rounds: no part of the real law
             return self.lost(arb(-other), arb(0))
-        return replace(self, value=self.value + other.value, errors=_combined(self.errors, 1, other.errors, 1))
+        return replace(self, value=self.value + other.value, errors=combined(self.errors, 1, other.errors, 1))
 
     def __sub__(self, other: "TrackedWord") -> "TrackedWord":
-        return replace(self, value=self.value - other.value, errors=_combined(self.errors, 1, other.errors, -1))
+        return replace(self, value=self.value - other.value, errors=combined(self.errors, 1, other.errors, -1))
 
     def __mul__(self, other: "TrackedWord | int") -> "TrackedWord":
         if isinstance(other, int):
             return self.times(arb(other))
-        errors = _combined(self.errors, other.value, other.errors, self.value)
+        errors = combined(self.errors, other.value, other.errors, self.value)
         product = replace(self, value=self.value * other.value, errors=errors)
         second_order = arb(self.error) * arb(other.error)
         return product.lost(arb(0), second_order) if second_order != 0 else product
@@ -50,7 +50,7 @@ class TrackedWord:
 
     def lost(self, known: arb, unknown: arb) -> "TrackedWord":
         """The word less known +- unknown, its real value unchanged."""
-        errors = _combined(self.errors, 1, {_KNOWN: -known}, 1)
+        errors = combined(self.errors, 1, {_KNOWN: -known}, 1)
         if unknown != 0:
             errors[next(self.symbols)] = unknown
         return replace(self, errors=errors)
@@ -58,7 +58,7 @@ class TrackedWord:
     @property
     def error(self) -> float:
         """Upper bound of |word - real number| in steps of the word."""
-        return upper_bound(sum((abs(c) for c in self.errors.values()), arb(0)))
+        return size_of(self.errors)
 
 
 class ErrorWords(Words[W], Protocol[W]):
@@ -155,10 +155,3 @@ class TrackedWords:
 
 
 _HALF = arb(0.5)
-
-
-def _combined(one: Mapping[int, arb], by: arb | int, other: Mapping[int, arb], other_by: arb | int) -> dict[int, arb]:
-    errors = {symbol: c * by for symbol, c in one.items()}
-    for symbol, c in other.items():
-        errors[symbol] = errors[symbol] + c * other_by if symbol in errors else c * other_by
-    return errors
