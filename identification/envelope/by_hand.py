@@ -1,6 +1,6 @@
 """What starts that were typed in did to their flights, beside the other tunings (seed 003, Table 2.2)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from identification.envelope.check import Check, margins_of
@@ -23,18 +23,8 @@ class Tried:
 def tried(found: Study, starts: Starts) -> tuple[Tried, ...]:
     """The flights whose starts were typed in, in the order of the study."""
     return tuple(
-        _tried(check, place)
-        for check in _checks(found)
-        for place, name in enumerate(check.data.names)
-        if name in starts
+        _tried(check, place) for check in found.checks for place, name in enumerate(check.data.names) if name in starts
     )
-
-
-def _checks(found: Study) -> Iterator[Check]:
-    for entry in found.conditions:
-        yield from entry.checks
-    for left_out in found.left_out:
-        yield left_out.between
 
 
 def _tried(check: Check, place: int) -> Tried:

@@ -1,7 +1,5 @@
 """How good models over the envelope are, by the one rule of records.quality."""
 
-from collections.abc import Iterator
-
 from identification.envelope.check import FINAL, Check
 from identification.envelope.study import Study
 from records.quality import MARGINS, Colour, Look, Quality, flag
@@ -9,17 +7,9 @@ from records.quality import MARGINS, Colour, Look, Quality, flag
 
 def envelope_quality(found: Study) -> Quality:
     """Each signal of each free run, starts and trims tuned; a flag for runs that leave the margins within three seconds, and notes."""
-    runs = [look for check in checks_of(found) for look in check_looks(check)]
+    runs = [look for check in found.checks for look in check_looks(check)]
     notes = [f"{entry.condition.name}: {note}" for entry in found.conditions for note in entry.notes]
     return Quality((*runs, *(flag(note) for note in (*notes, *found.unused))))
-
-
-def checks_of(found: Study) -> Iterator[Check]:
-    """All free runs: identification and validation by condition, then those of conditions left out."""
-    for entry in found.conditions:
-        yield from entry.checks
-    for other in found.left_out:
-        yield other.between
 
 
 def check_looks(check: Check, how: str = FINAL) -> list[Look]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from identification.envelope.check import Check
 from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import Flight
 from identification.envelope.flights.shortcomings import unused
@@ -35,6 +36,12 @@ class Study:
     left_out: tuple[Interpolated, ...]
     flights: int
     unused: tuple[str, ...] = ()
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """All free runs: identification and validation by condition, then those of conditions left out."""
+        own = (check for entry in self.conditions for check in entry.checks)
+        return (*own, *(entry.between for entry in self.left_out))
 
 
 def _unsaved(_: Study) -> None:
