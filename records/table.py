@@ -254,7 +254,7 @@ def parse_frame(
     loops = parse_loops(content["loops"], f"{where}: loops") if "loops" in content else LOOPS
     schedule = _schedule(content, loops, where)
     names = [loop.axis for loop in loops]
-    ranges = () if schedule is None else _range_keys(loops[names.index(schedule.axis)])
+    ranges = () if schedule is None else range_keys(loops[names.index(schedule.axis)])
     required = [name for name in _SHARED if name != "loops"]
     checks.keys(content, where, (*required, *own, *names, *ranges), ("loops",))
     return {
@@ -370,7 +370,7 @@ def _analogue(entry: Any, where: str, loop: Loop) -> Analogue:
 
 def _schedule(content: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -> Schedule | None:
     for loop in loops:
-        low, high = _range_keys(loop)
+        low, high = range_keys(loop)
         if low in content and high in content:
             limits = (checks.number(content[key], f"{where}: {key}") for key in (low, high))
             return Schedule(loop.axis, *limits)
@@ -380,11 +380,12 @@ def _schedule(content: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -
 def _range_entries(table: Table[Any]) -> dict[str, float]:
     if table.schedule is None:
         return {}
-    keys = _range_keys(table.loops[table.index(table.schedule.axis)])
+    keys = range_keys(table.loops[table.index(table.schedule.axis)])
     return dict(zip(keys, (table.schedule.min_rad, table.schedule.max_rad), strict=True))
 
 
-def _range_keys(loop: Loop) -> tuple[str, str]:
+def range_keys(loop: Loop) -> tuple[str, str]:
+    """What the ends of the schedule's range are called, in a table and in a plant file's wishes."""
     return loop.own(f"{loop.symbol}_min_rad"), loop.own(f"{loop.symbol}_max_rad")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from design.structure import measured_axis, stops
 from records.errors import BadInput
 from records.loops import LOOPS, Loop
-from records.table import Schedule
+from records.table import Schedule, range_keys
 from records.text import checks
 from records.text.units import unit_of
 from sim.bind import BoundPlant
@@ -42,11 +42,6 @@ def read_schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, whe
     low, high = (range_end(section, key, default, end, where) for end, key in enumerate((low_key, high_key)))
     check_range(f"{where}: {low_key}, {high_key}", low, high, stops_rad, "operating range", loop)
     return Schedule(loop.axis, low, high)
-
-
-def range_keys(loop: Loop) -> tuple[str, str]:
-    """What the schedule's range is called in the section."""
-    return loop.own(f"{loop.symbol}_min_rad"), loop.own(f"{loop.symbol}_max_rad")
 
 
 def range_end(section: Mapping[str, Any], key: str, default: tuple[float, float] | None, end: int, where: str) -> float:

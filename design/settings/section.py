@@ -40,12 +40,13 @@ from typing import Any
 
 from design.settings.axis import read_axis
 from design.settings.entries import count, entry
-from design.settings.ranges import range_keys, read_schedule, scheduling_loop
+from design.settings.ranges import read_schedule, scheduling_loop
 from design.settings.together import check_degrees, check_nyquist, check_period
 from design.settings.wishes import LEAST_RELATIVE_GAIN, DesignSettings, MarginLimits
 from design.structure import loops_of
 from records.errors import BadInput
 from records.loops import LOOPS
+from records.table import range_keys
 from records.text import checks
 from sim.bind import BoundPlant
 
