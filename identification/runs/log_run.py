@@ -83,11 +83,14 @@ def _check(bound: BoundPlant, log: RunLog, name: str) -> None:
         raise BadInput(
             "readings", name, got, "a reading of at least one output", "give a log in which something was measured"
         )
+    demand_equations_alone(bound)
+
+
+def demand_equations_alone(bound: BoundPlant) -> None:
+    """Raise BadInput for a plant with effects on the way of its inputs or outputs."""
     if bound.input_path or bound.output_path:
-        raise BadInput(
-            "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
-            "identify from the plant without them",
-        )  # fmt: skip
+        got, remedy = "effects on the way of an input or output", "identify from the plant without them"
+        raise BadInput("effects", bound.plant.name, got, "effects in the equations alone", remedy)
 
 
 def _sds(y: Array, channel: NDArray[np.int64], step: Array, noise: Array) -> Array:

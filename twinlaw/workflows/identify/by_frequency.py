@@ -22,6 +22,7 @@ from identification.frequency.result import FrequencyIdentification, frequency_f
 from identification.frequency.truth import Truth, truth_of
 from identification.results.notes import bound_warning
 from identification.results.result import signs_of
+from identification.runs.log_run import demand_equations_alone
 from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
 from records.errors import BadInput
@@ -135,11 +136,7 @@ def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
 def _operating_point(
     chosen: argparse.Namespace, holdout: Sequence[Path], bound: BoundPlant, true: Plant | None, told: Told
 ) -> Done:
-    if bound.input_path or bound.output_path:
-        raise BadInput(
-            "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
-            "identify from the plant without them",
-        )  # fmt: skip
+    demand_equations_alone(bound)
     inputs = looked_at(Inputs((), *_read(chosen, holdout, plant_columns(bound.model))), bound)
     inputs = asked_for_columns(inputs, bound)
     outputs = tuple(bound.model.outputs)
