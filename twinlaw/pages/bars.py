@@ -8,10 +8,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter
 
 from twinlaw.pages.margins import arrange
-from twinlaw.pages.plots import ORANGE, STYLE, svg
+from twinlaw.pages.plots import ORANGE, STYLE, PlainLog, svg
 
 
 @dataclass(frozen=True)
@@ -39,17 +38,9 @@ def bars(panels: Sequence[Bars], *, height_in: float = 2.4) -> str:
         return svg(figure)
 
 
-class _PlainNumbers(LogFormatter):
-    """0.01, 0.1, 1 along an axis that grows by factors: powers of ten would be set by a program for formulas, which takes longer than
-    all the rest of a picture."""
-
-    def __call__(self, x: float, pos: int | None = None) -> str:
-        return f"{x:g}" if super().__call__(x, pos) else ""
-
-
 def _by_factors(axis: Any) -> None:
-    axis.set_major_formatter(_PlainNumbers())
-    axis.set_minor_formatter(_PlainNumbers(minor_thresholds=(1.0, 0.5)))
+    axis.set_major_formatter(PlainLog())
+    axis.set_minor_formatter(PlainLog(minor_thresholds=(1.0, 0.5)))
 
 
 def _draw_bars(axes: Axes, panel: Bars) -> None:

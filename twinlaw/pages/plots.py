@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatterSciNotation
+from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
 from twinlaw.pages.margins import LEGEND_POINTS, arrange, names_in
@@ -127,8 +127,9 @@ def grid(
         return svg(figure)
 
 
-class PlainLog(LogFormatterSciNotation):
-    """Ticks of a logarithmic axis as plain numbers: within one decade most of them bear one, and 4 is read sooner than 4 x 10^0."""
+class PlainLog(LogFormatter):
+    """Ticks of a logarithmic axis as plain numbers: within one decade most of them bear one, and 4 is read sooner than 4 x 10^0, which is
+    besides set by a program for formulas that takes longer than all the rest of a picture."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
         return f"{x:g}" if super().__call__(x, pos) else ""
