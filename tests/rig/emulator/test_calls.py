@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from codegen.numbers import float32_bits
 from records.errors import BadInput
 from rig.emulator.answers import StoppedError
 from rig.emulator.bench import measure
@@ -59,13 +60,9 @@ def board() -> EmulatedBoard:
     return powered("calls", SOURCE)
 
 
-def bits(value: float) -> int:
-    return int(np.float32(value).view(np.uint32))
-
-
 def test_a_call_returns_what_the_function_returns(board: EmulatedBoard) -> None:
     assert board.call("divide", 1000, -7).result == (-142) & 0xFFFFFFFF
-    assert board.call("scale", bits(2.5)).result == bits(4.0)
+    assert board.call("scale", float32_bits(2.5)).result == float32_bits(4.0)
 
 
 def test_a_call_leaves_core_peripherals_and_time_as_they_were(board: EmulatedBoard) -> None:
@@ -206,7 +203,7 @@ def test_the_high_water_mark_of_the_stack_counts_exception_frames(board: Emulate
 
 def test_the_speed_is_instructions_of_real_work_per_cpu_second(board: EmulatedBoard) -> None:
     steps = 2000
-    speed = measure(board, "scale", (bits(2.5),), steps)
-    single = board.call("scale", bits(2.5))
+    speed = measure(board, "scale", (float32_bits(2.5),), steps)
+    single = board.call("scale", float32_bits(2.5))
     assert (speed.instructions, speed.cycles) == (steps * single.instructions, steps * single.cycles)
     assert speed.instructions_per_s == speed.instructions / speed.cpu_s > 0

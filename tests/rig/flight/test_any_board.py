@@ -34,6 +34,7 @@ from sim.runs.stepped import SteppedPlant
 from sim.wiring import wiring
 from tests.codegen.test_any_loops import STIMULI, TWINS, any_table
 from tests.other_plants import PLANTS, WISHES, plant_file
+from tests.rig.images import emulated_url
 from tests.soak import SOAK, sampled
 from twinlaw.workflows.chain.designing import design_plant
 from twinlaw.workflows.chain.flying import flight_of
@@ -58,8 +59,8 @@ def part_of(whole: Manoeuvre) -> Manoeuvre:
 @contextmanager
 def board(table: ControllerTable, arithmetic: str, folder: Path) -> Iterator[BoardClient]:
     """The emulated board with the table's image, behind its serial line."""
-    build_firmware(generate_law(table, arithmetic), folder, loops=table.loops)
-    url, numbers = f"emulated://{folder / 'firmware.elf'}", numbers_of(table, arithmetic)
+    numbers = numbers_of(table, arithmetic)
+    url = emulated_url(generate_law(table, arithmetic), folder, table.loops)
     with BoardClient.connect(
         url, table_digest=table.digest, numbers=numbers, protocol=protocol_of(table.loops)
     ) as client:
@@ -152,8 +153,7 @@ def own_flight(own: Own, folder: Path) -> Iterator[tuple[ControllerTable, BoardC
     table = design_plant(bound, own.arithmetic).table
     wires, steps = wiring(bound, table.loops), (table.axes[0].resolution_rad,)
     demand_drivable(table)
-    build_firmware(generate_law(table, own.arithmetic), folder, loops=table.loops)
-    url = f"emulated://{folder / 'firmware.elf'}"
+    url = emulated_url(generate_law(table, own.arithmetic), folder, table.loops)
     port, protocol = open_port(url, timeout_s=0.25), protocol_of(table.loops)
     numbers = numbers_of(table, own.arithmetic)
     with BoardClient.over(port, url, table_digest=table.digest, numbers=numbers, protocol=protocol) as client:
@@ -297,6 +297,6 @@ def test_a_table_with_pins_reads_back_as_itself(tmp_path: Path) -> None:
 
 def test_a_board_of_other_loops_is_refused_before_anything_is_armed(tmp_path: Path) -> None:
     table = any_table((2, 1, 4, 3), 2)
-    build_firmware(generate_law(table), tmp_path, loops=table.loops)
+    url = emulated_url(generate_law(table), tmp_path, table.loops)
     with pytest.raises(BadInput, match=r"protocol.*schema"):
-        BoardClient.connect(f"emulated://{tmp_path / 'firmware.elf'}")
+        BoardClient.connect(url)

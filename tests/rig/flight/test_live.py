@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.law import generate_law
 from records.errors import BadInput
 from records.plant import load_plant
 from records.protocol import PROTOCOL
@@ -18,7 +17,6 @@ from rig.flight.live_flying import EmulatedRig, FlyingFlight
 from rig.link.client import BoardClient
 from rig.link.numbers import Float32Numbers
 from rig.link.port import open_port
-from rig.programming.image import build_firmware
 from sim.bind import BoundPlant, bind
 from sim.loop import fly, live_log
 from sim.manoeuvres import at_rest, hop
@@ -56,26 +54,19 @@ class Desk:
         return flight
 
 
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> str:
-    folder = tmp_path_factory.mktemp("image")
-    build_firmware(generate_law(TABLE), folder)
-    return f"emulated://{folder / 'firmware.elf'}"
-
-
 @pytest.fixture
-def desk(url: str) -> Iterator[Desk]:
-    port = open_port(url, timeout_s=0.25)
-    client = BoardClient.over(port, url, table_digest=TABLE.digest, numbers=Float32Numbers())
+def desk(ce150_url: str) -> Iterator[Desk]:
+    port = open_port(ce150_url, timeout_s=0.25)
+    client = BoardClient.over(port, ce150_url, table_digest=TABLE.digest, numbers=Float32Numbers())
     with client:
         yield Desk(port, client, bind(load_plant(Path("plants/ce150.toml"))))
 
 
-def test_sample_by_sample_it_is_the_closed_loop(desk: Desk, url: str) -> None:
+def test_sample_by_sample_it_is_the_closed_loop(desk: Desk, ce150_url: str) -> None:
     whole_hop = hop(desk.bound)
     samples = slice(None if SOAK else 300)  # both references have moved by then
     manoeuvre = replace(whole_hop, t_s=whole_hop.t_s[samples], reference_rad=whole_hop.reference_rad[samples])
-    with BoardClient.connect(url, table_digest=TABLE.digest) as client:
+    with BoardClient.connect(ce150_url, table_digest=TABLE.digest) as client:
         whole = fly(desk.bound, BoardController(client), manoeuvre, table_digest=TABLE.digest)
     flight = desk.loop(manoeuvre.x0)
     flight.arm()

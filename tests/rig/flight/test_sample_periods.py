@@ -13,12 +13,12 @@ from rig.flight.live_flying import EmulatedRig, FlyingFlight, ticks_of_telemetry
 from rig.link.client import BoardClient
 from rig.link.numbers import numbers_of
 from rig.link.port import open_port
-from rig.programming.image import build_firmware
 from sim.bind import bind
 from sim.manoeuvres import at_rest
 from sim.runs.stepped import SteppedPlant
 from sim.wiring import wiring
 from tests.law_tables import ce150_table
+from tests.rig.images import emulated_url
 from tests.soak import sampled
 
 BOUND = bind(load_plant(Path(__file__).parents[3] / "plants" / "ce150.toml"))
@@ -37,8 +37,7 @@ def test_the_board_ticks_at_the_table_s_period_and_watches_its_host_by_the_clock
     """The table's gains are those of another period: what is flown here is the clock, at rest on the lower stop."""
     period_s = 1e-6 * period_us
     table = replace(ce150_table(), sample_period_s=period_s)
-    build_firmware(generate_law(table, arithmetic), tmp_path)
-    url = f"emulated://{tmp_path / 'firmware.elf'}"
+    url = emulated_url(generate_law(table, arithmetic), tmp_path)
     port = open_port(url, timeout_s=0.25)
     with BoardClient.over(port, url, table_digest=table.digest, numbers=numbers_of(table, arithmetic)) as client:
         assert client.identity.sample_period_s == pytest.approx(period_s)

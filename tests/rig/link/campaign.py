@@ -26,21 +26,11 @@ from rig.link.hostile_line_faults import (
     TruncateFrames,
 )
 from tests.docs.tables import keep
-from tests.firmware.box import DIGEST, word
+from tests.firmware.box import DIGEST, REFUSALS, word
 from tests.rig.link.line_box import LineBox
 
 SAMPLE = PROTOCOL.message("SAMPLE").code
 BATCH = 500
-REFUSALS = (
-    "cobs_errors",
-    "too_long",
-    "too_short",
-    "crc_errors",
-    "wrong_version",
-    "unknown_type",
-    "wrong_length",
-    "stale",
-)
 KINDS = (DropFrames, DoubleFrames, SwapFrames, TruncateFrames, DropBytes, DoubleBytes, SpoilBytes, Babble)
 WRONG_SPEEDS = (0.7, 0.94, 0.97, 1.03, 1.06, 1.5)
 

@@ -21,9 +21,9 @@ from rig.link.hostile_line import HostileLine
 from rig.link.hostile_line_faults import Direction, Noise
 from rig.link.numbers import numbers_of
 from rig.link.port import open_port
-from rig.programming.image import build_firmware
 from tests.docs.tables import keep
 from tests.law_tables import ce150_table
+from tests.rig.images import emulated_url
 from tests.rig.link.campaign import REFUSALS, usual_faults
 from verification.fixed_stimuli import fixed_sequences
 from verification.host_law import host_law
@@ -101,8 +101,7 @@ def rows(account: Account) -> list[tuple[str, int]]:
 
 def built_url(table: ControllerTable, folder: Path) -> str:
     """The image of the table, built into `folder`, on the emulated board."""
-    build_firmware(generate_law(table, ARITHMETIC), folder)
-    return f"emulated://{folder / 'firmware.elf'}"
+    return emulated_url(generate_law(table, ARITHMETIC), folder)
 
 
 if __name__ == "__main__":

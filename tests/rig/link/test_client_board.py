@@ -14,7 +14,6 @@ from rig.flight.controller import BoardController
 from rig.link.client import BoardClient
 from rig.link.numbers import Float32Numbers
 from rig.link.port import open_port
-from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from verification.host_law import HostLaw
 
@@ -22,13 +21,6 @@ TABLE = ce150_table()
 STEP_RAD = 2.0 * np.pi / 4096.0
 TICK_S = 0.01
 ERRORS = ("cobs_errors", "too_long", "crc_errors", "frames_lost", "uart_overruns", "rx_ring_overflows", "tick_overruns")
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory) -> str:
-    folder = tmp_path_factory.mktemp("image")
-    build_firmware(generate_law(TABLE), folder)
-    return f"emulated://{folder / 'firmware.elf'}"
 
 
 def bits(values) -> bytes:
@@ -43,10 +35,10 @@ def wandering(steps: int, seed: int) -> np.ndarray:
     return np.hstack([references, np.round(angles / STEP_RAD) * STEP_RAD])
 
 
-def test_a_thousand_samples_over_the_line_give_the_bits_of_the_compiled_law(url):
+def test_a_thousand_samples_over_the_line_give_the_bits_of_the_compiled_law(ce150_url):
     rows = wandering(1000, seed=2)
     host = HostLaw(generate_law(TABLE))
-    with BoardClient.connect(url, table_digest=TABLE.digest) as client:
+    with BoardClient.connect(ce150_url, table_digest=TABLE.digest) as client:
         board = BoardController(client)
         for controller in (board, host):
             controller.reset(rows[0, 2], rows[0, 3])
@@ -57,9 +49,9 @@ def test_a_thousand_samples_over_the_line_give_the_bits_of_the_compiled_law(url)
     assert len({bits(answer) for answer in answers}) > 500
 
 
-def test_the_board_of_another_table_is_refused_before_anything_runs(url):
+def test_the_board_of_another_table_is_refused_before_anything_runs(ce150_url):
     with pytest.raises(BadInput, match="flash the image of this table"):
-        BoardClient.connect(url, table_digest="00" * 32)
+        BoardClient.connect(ce150_url, table_digest="00" * 32)
 
 
 def test_an_image_that_is_not_there_is_one_clear_line():
@@ -68,14 +60,14 @@ def test_an_image_that_is_not_there_is_one_clear_line():
     assert "\n" not in str(caught.value)
 
 
-def test_the_self_test_of_the_law_passes_on_the_board(url):
-    with BoardClient.connect(url, table_digest=TABLE.digest) as client:
+def test_the_self_test_of_the_law_passes_on_the_board(ce150_url):
+    with BoardClient.connect(ce150_url, table_digest=TABLE.digest) as client:
         assert client.self_test() == 0
 
 
-def test_a_flight_on_its_own_encoders_gives_the_bits_of_the_compiled_law(url):
-    port = open_port(url, timeout_s=0.25)
-    client = BoardClient.over(port, url, table_digest=TABLE.digest, numbers=Float32Numbers())
+def test_a_flight_on_its_own_encoders_gives_the_bits_of_the_compiled_law(ce150_url):
+    port = open_port(ce150_url, timeout_s=0.25)
+    client = BoardClient.over(port, ce150_url, table_digest=TABLE.digest, numbers=Float32Numbers())
     host = HostLaw(generate_law(TABLE))
     source = np.random.default_rng(4)
     counts = np.cumsum(source.integers(-3, 4, (300, 2)), axis=0)
@@ -99,9 +91,9 @@ def test_a_flight_on_its_own_encoders_gives_the_bits_of_the_compiled_law(url):
     assert len({t.counts[0] for t in seen}) > 10
 
 
-def test_a_host_that_goes_away_leaves_the_rotors_off(url):
-    port = open_port(url, timeout_s=0.25)
-    client = BoardClient.over(port, url, table_digest=TABLE.digest, numbers=Float32Numbers())
+def test_a_host_that_goes_away_leaves_the_rotors_off(ce150_url):
+    port = open_port(ce150_url, timeout_s=0.25)
+    client = BoardClient.over(port, ce150_url, table_digest=TABLE.digest, numbers=Float32Numbers())
     client.arm("FLYING")
     client.reference(0.5, 0.0)
     port.wait(0.05)
@@ -111,8 +103,8 @@ def test_a_host_that_goes_away_leaves_the_rotors_off(url):
     assert (pwm.enabled, pwm.main_ticks, pwm.tail_ticks) == (False, 0, 0)
 
 
-def test_the_same_client_speaks_through_a_real_terminal_device(url):
-    with PtyBoard(Path(url.removeprefix("emulated://"))) as board:
+def test_the_same_client_speaks_through_a_real_terminal_device(ce150_url):
+    with PtyBoard(Path(ce150_url.removeprefix("emulated://"))) as board:
         with BoardClient.connect(board.path, table_digest=TABLE.digest, timeout_s=1.0) as client:
             assert client.self_test() == 0
             client.arm("LOOP")
@@ -121,8 +113,8 @@ def test_the_same_client_speaks_through_a_real_terminal_device(url):
         assert board.stop is None
 
 
-def test_a_line_at_another_speed_says_noise_or_nothing(url):
-    port = open_port(url, timeout_s=0.25)
+def test_a_line_at_another_speed_says_noise_or_nothing(ce150_url):
+    port = open_port(ce150_url, timeout_s=0.25)
     port.baudrate = 115_200
     with pytest.raises(BadInput, match=r"noise|no answer"):
-        BoardClient.over(port, url, table_digest=None, numbers=Float32Numbers())
+        BoardClient.over(port, ce150_url, table_digest=None, numbers=Float32Numbers())

@@ -25,8 +25,6 @@ from rig.link.hostile_line_faults import (
     TruncateFrames,
 )
 from rig.link.port import open_port
-from rig.programming.image import build_firmware
-from tests.firmware.box import stand_in_law
 from tests.rig.link.campaign import usual_faults
 from tests.rig.link.hostile_sessions import complete_or_one_line, connect, counted_steps, session
 from tests.soak import SOAK, sampled
@@ -37,13 +35,6 @@ FRAMES_BACK = 10
 SEEDS = range(100 if SOAK else 4)
 SEEDS_OF_A_KIND = range(100 if SOAK else 1)
 UP = Direction.TO_BOARD
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory) -> str:
-    folder = tmp_path_factory.mktemp("image")
-    build_firmware(stand_in_law(), folder)
-    return f"emulated://{folder / 'firmware.elf'}"
 
 
 Faults = Callable[[random.Random, Any], list[Fault]]
@@ -78,8 +69,8 @@ LOOPED = ("all frames dropped", "noise", "stuck low")
 class Host:
     """A host that flies the board with a reference each sample, whatever the line does to it."""
 
-    def __init__(self, url: str, faults: list[Fault], seed: int) -> None:
-        self.port = open_port(url, timeout_s=0.25)
+    def __init__(self, stand_in_url: str, faults: list[Fault], seed: int) -> None:
+        self.port = open_port(stand_in_url, timeout_s=0.25)
         self.line = HostileLine(self.port, faults, seed)
         self.client = connect(self.line)
 
@@ -125,10 +116,12 @@ def span(source: random.Random) -> dict[str, float]:
 
 @pytest.mark.parametrize("seed", SEEDS_OF_A_KIND)
 @pytest.mark.parametrize("kind", TOTAL)
-def test_flying_is_safe_ten_samples_after_the_last_setpoint_and_back_ten_frames_after_the_cure(url, kind, seed):
+def test_flying_is_safe_ten_samples_after_the_last_setpoint_and_back_ten_frames_after_the_cure(
+    stand_in_url, kind, seed
+):
     source = random.Random(f"{kind} {seed}")
     when = span(source)
-    host = Host(url, TOTAL[kind](source, when), seed)
+    host = Host(stand_in_url, TOTAL[kind](source, when), seed)
     host.takes_off()
     last_setpoint_s = flown_s = host.port.time_s
     while host.port.time_s < when["until_s"]:
@@ -144,10 +137,10 @@ def test_flying_is_safe_ten_samples_after_the_last_setpoint_and_back_ten_frames_
 
 @pytest.mark.parametrize("seed", SEEDS_OF_A_KIND)
 @pytest.mark.parametrize("kind", sampled(TOTAL, keep=LOOPED))
-def test_in_the_loop_the_host_gets_one_error_and_a_new_session_ten_frames_after_the_cure(url, kind, seed):
+def test_in_the_loop_the_host_gets_one_error_and_a_new_session_ten_frames_after_the_cure(stand_in_url, kind, seed):
     source = random.Random(f"loop {kind} {seed}")
     when = span(source)
-    host = Host(url, TOTAL[kind](source, when), seed)
+    host = Host(stand_in_url, TOTAL[kind](source, when), seed)
     host.client.arm("LOOP")
     with pytest.raises(BadInput):
         samples_until(host, when["until_s"] + 1.0)
@@ -161,11 +154,11 @@ def test_in_the_loop_the_host_gets_one_error_and_a_new_session_ten_frames_after_
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_host_that_stands_still_loses_its_board_and_takes_it_back(url, seed):
+def test_a_host_that_stands_still_loses_its_board_and_takes_it_back(stand_in_url, seed):
     source = random.Random(seed)
     at_s = source.uniform(0.60, 0.65)
     duration_s = source.uniform(0.11, 0.5) if seed else 0.11  # the shortest ends while the duties still fall
-    host = Host(url, [HostPause(duration_s=duration_s, from_s=at_s, until_s=at_s + 0.011)], seed)
+    host = Host(stand_in_url, [HostPause(duration_s=duration_s, from_s=at_s, until_s=at_s + 0.011)], seed)
     host.takes_off()
     last_setpoint_s = sent_s = host.port.time_s
     while host.line.struck()["HostPause"] == 0:
@@ -180,9 +173,9 @@ def test_a_host_that_stands_still_loses_its_board_and_takes_it_back(url, seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_board_that_is_reset_in_the_middle_of_a_frame_is_safe_at_once_and_back_within_ten_frames(url, seed):
+def test_a_board_that_is_reset_in_the_middle_of_a_frame_is_safe_at_once_and_back_within_ten_frames(stand_in_url, seed):
     at_s = random.Random(seed).uniform(0.60, 0.65)
-    host = Host(url, [BoardReset(from_s=at_s, until_s=at_s + 0.011)], seed)
+    host = Host(stand_in_url, [BoardReset(from_s=at_s, until_s=at_s + 0.011)], seed)
     host.takes_off()
     while host.line.struck()["BoardReset"] == 0:
         assert host.drives
@@ -199,8 +192,8 @@ def test_a_board_that_is_reset_in_the_middle_of_a_frame_is_safe_at_once_and_back
 
 
 @pytest.mark.parametrize("cut", sampled(range(18), keep=range(0, 18, 4)))
-def test_a_host_that_dies_in_the_middle_of_a_frame_makes_room_for_the_next(url, cut):
-    host = Host(url, [], 1)
+def test_a_host_that_dies_in_the_middle_of_a_frame_makes_room_for_the_next(stand_in_url, cut):
+    host = Host(stand_in_url, [], 1)
     host.takes_off()
     frame = encode_frame(PROTOCOL, "REFERENCE", 3, {"psi_ref_rad": 0, "phi_ref_rad": 0})
     host.line.write(frame[:cut])
@@ -211,8 +204,8 @@ def test_a_host_that_dies_in_the_middle_of_a_frame_makes_room_for_the_next(url, 
     assert host.line.frames_sent - before <= FRAMES_BACK + 1  # the half frame counts too
 
 
-def test_a_host_whose_receiver_overflows_loses_telemetry_and_no_command(url):
-    host = Host(url, [HostFifo(depth=64)], 1)
+def test_a_host_whose_receiver_overflows_loses_telemetry_and_no_command(stand_in_url):
+    host = Host(stand_in_url, [HostFifo(depth=64)], 1)
     host.takes_off()
     for _ in range(20):
         host.refer()
@@ -225,13 +218,13 @@ def test_a_host_whose_receiver_overflows_loses_telemetry_and_no_command(url):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_with_every_fault_at_once_a_session_ends_complete_or_in_one_error_and_the_next_works(url, seed):
+def test_with_every_fault_at_once_a_session_ends_complete_or_in_one_error_and_the_next_works(stand_in_url, seed):
     source = random.Random(seed)
     rate = 10 ** source.uniform(-3.0, -1.2)
     faults: list[Fault] = [fault for way in Direction for fault in usual_faults(way, rate)]
     faults += [Noise(direction=way, bursts_per_bit=rate * 1e-3, burst_bits=source.choice([1, 30])) for way in Direction]
     faults += [BaudMismatch(ratio=source.uniform(0.97, 1.03), from_s=0.4), HostPause(duration_s=0.02, rate=rate)]
-    port = open_port(url, timeout_s=0.25)
+    port = open_port(stand_in_url, timeout_s=0.25)
     line = HostileLine(port, faults, seed)
     line.close = lambda: None  # a client that finds no board hangs up, which would switch the emulated one off
     complete = [complete_or_one_line(line, 40) for _ in range(2)]

@@ -21,8 +21,6 @@ from rig.link.hostile_line_faults import (
     TruncateFrames,
 )
 from rig.link.port import open_port
-from rig.programming.image import build_firmware
-from tests.firmware.box import stand_in_law
 from tests.rig.link.campaign import usual_faults
 from tests.rig.link.hostile_sessions import connect, counted_steps, session
 from tests.rig.link.timed_box import TimedBox
@@ -30,13 +28,6 @@ from tests.rig.link.timed_box import TimedBox
 UP = Direction.TO_BOARD
 FRAME = b"\x03\x11\x22\x33\x44\x00"
 NEXT = b"\x02\x55\x00"
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory) -> str:
-    folder = tmp_path_factory.mktemp("image")
-    build_firmware(stand_in_law(), folder)
-    return f"emulated://{folder / 'firmware.elf'}"
 
 
 def arriving(fault, *frames: bytes, seed: int = 1) -> bytes:
@@ -103,9 +94,9 @@ def test_what_has_struck_is_counted_by_name():
     assert line.struck()["HostPause"] > line.frames_sent
 
 
-def test_a_line_that_falls_low_is_one_framing_error_and_one_that_rests_high_is_none(url):
+def test_a_line_that_falls_low_is_one_framing_error_and_one_that_rests_high_is_none(stand_in_url):
     for low in (True, False):
-        port = open_port(url, timeout_s=0.25)
+        port = open_port(stand_in_url, timeout_s=0.25)
         line = HostileLine(port, [StuckLine(direction=UP, low=low, from_s=0.6, until_s=0.7)])
         client = connect(line)
         line.wait(0.8 - line.time_s)
@@ -114,8 +105,8 @@ def test_a_line_that_falls_low_is_one_framing_error_and_one_that_rests_high_is_n
         assert sum(counted[name] for name in ("cobs_errors", "crc_errors", "too_short", "frames_lost")) == 0
 
 
-def test_noise_on_start_and_stop_bits_is_seen_by_the_board_s_own_receiver(url):
-    port = open_port(url, timeout_s=0.25)
+def test_noise_on_start_and_stop_bits_is_seen_by_the_board_s_own_receiver(stand_in_url):
+    port = open_port(stand_in_url, timeout_s=0.25)
     line = HostileLine(port, [Noise(direction=UP, bursts_per_bit=0.02, from_s=0.6, until_s=1.2)], seed=3)
     client = connect(line)
     client.arm("FLYING")
