@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diagnosis.diagnose import Material, diagnose
+from diagnosis.library.effect_library import EffectLibrary, effect_library
 from diagnosis.result import Result
 from records.log import RunLog
 from records.plant import load_plant
@@ -44,6 +45,14 @@ SPRING: Mapping[str, Mapping[str, float]] = {"azimuth.cable_spring": {"k": 0.004
 def plant() -> BoundPlant:
     """The CE150 as stated."""
     return bind(load_plant(Path("plants/ce150.toml")))
+
+
+@pytest.fixture(scope="session")
+def stateless(plant: BoundPlant) -> EffectLibrary:
+    """That of the CE150 without effects that bring a state, whose filter takes ten seconds to build."""
+    whole = effect_library(plant)
+    kept = {name: effect for name, effect in whole.effects.items() if name not in whole.wide_names}
+    return replace(whole, effects=kept, wide_names=())
 
 
 @pytest.fixture(scope="session")

@@ -13,6 +13,17 @@ from toolchain.host import CText, build_shared, load_shared
 
 HERE = Path(__file__).resolve().parent
 DIGEST = bytes(range(1, 33))
+# Counters of what the receiver does not take, one for each reason.
+REFUSALS = (
+    "cobs_errors",
+    "too_long",
+    "too_short",
+    "crc_errors",
+    "wrong_version",
+    "unknown_type",
+    "wrong_length",
+    "stale",
+)
 COUNTS_TO_RAD = 0.001534
 _CDEF = """
 typedef struct {

@@ -63,6 +63,12 @@ class Desk:
     def state(self) -> str:
         return STATES[self.ask("GET_COUNTERS").number("state")]
 
+    @property
+    def drives(self) -> bool:
+        """Whether anything but 0 V reaches a motor."""
+        pwm = self.board.pwm()
+        return pwm.enabled and (pwm.main_ticks, pwm.tail_ticks) != (0, 0)
+
     def hang(self) -> None:
         """What a control step that never finishes does: the main loop stands still, interrupts go on."""
         address = self.board.scratch_address()

@@ -24,11 +24,6 @@ CAUSES = {choice.code: choice.name for choice in PROTOCOL.enumeration("reset_cau
 
 
 @pytest.fixture(scope="module")
-def stand_in() -> bytes:
-    return build_firmware(stand_in_law()).elf
-
-
-@pytest.fixture(scope="module")
 def float32() -> bytes:
     return build_firmware(generate_law(ce150_table())).elf
 

@@ -4,8 +4,6 @@ import pytest
 
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
-from rig.programming.image import build_firmware
-from tests.firmware.box import stand_in_law
 from tests.firmware.desk import Desk
 
 TICK_S = 0.01
@@ -19,11 +17,6 @@ DIG_DOWN = bytes.fromhex("01b4 3c21 0139 fdd1 fae7".replace(" ", ""))
 PUSH_FOR_EVER = bytes.fromhex("ffb4 fde7".replace(" ", ""))  # push {r0-r7}; b to it
 
 
-@pytest.fixture(scope="module")
-def stand_in() -> bytes:
-    return build_firmware(stand_in_law()).elf
-
-
 @pytest.fixture
 def desk(stand_in) -> Desk:
     return flying(Desk(stand_in, config=BoardConfig(stop_on_fault=False)))
@@ -35,7 +28,7 @@ def flying(desk: Desk, psi_ref_rad: float = 0.5) -> Desk:
     desk.board.run_until_symbol("TIM6_Handler", desk.board.time_s + 2 * TICK_S)
     desk.run(0.001)
     fly(desk, psi_ref_rad)
-    assert drives(desk)
+    assert desk.drives
     return desk
 
 
@@ -43,12 +36,6 @@ def fly(desk: Desk, psi_ref_rad: float = 0.5) -> None:
     """One sample with its setpoint."""
     desk.refer(psi_ref_rad)
     desk.run(TICK_S)
-
-
-def drives(desk: Desk) -> bool:
-    """Whether anything but 0 V reaches a motor."""
-    pwm = desk.board.pwm()
-    return pwm.enabled and (pwm.main_ticks, pwm.tail_ticks) != (0, 0)
 
 
 def jump_to(desk: Desk, code: bytes) -> None:
@@ -88,7 +75,7 @@ def test_ticks_that_the_main_loop_missed_count_as_samples_without_a_host(desk, l
 def test_a_clock_that_runs_backward_is_a_lost_host_and_no_more(desk):
     desk.poke("ticks", desk.peek("ticks") - 5)
     desk.run(TICK_S)
-    assert not drives(desk)
+    assert not desk.drives
     assert desk.state == "LOST"
     flying(desk)
 
@@ -98,10 +85,10 @@ def test_a_stack_that_leaves_its_reserve_is_found_by_the_next_tick_although_the_
     begin_s = desk.board.time_s
     desk.board.run_until_s(begin_s + 0.0008)
     assert desk.board.stack_bytes < 4096
-    assert drives(desk)
+    assert desk.drives
     desk.board.run_until_s(begin_s + 1.02 * TICK_S)
     assert 4096 + 32 < desk.board.stack_bytes < 28_672  # out of its reserve, not yet in the variables
-    assert not drives(desk)
+    assert not desk.drives
     desk.board.run_until_s(begin_s + WATCHDOG_S + 2 * TICK_S)
     starts_anew(desk)
 
@@ -111,7 +98,7 @@ def test_a_stack_that_runs_over_all_variables_before_a_tick_ends_in_a_fault(desk
     begin_s = desk.board.time_s
     desk.board.run_until_s(begin_s + 0.1 * TICK_S)
     assert desk.board.stack_bytes > 28_672
-    assert not drives(desk)
+    assert not desk.drives
     desk.board.run_until_s(begin_s + WATCHDOG_S + 2 * TICK_S)
     starts_anew(desk)
 
@@ -123,7 +110,7 @@ def test_encoders_that_brown_out_and_come_back_elsewhere_end_the_flight(desk, ti
     desk.board.set_encoder(timer, counts)
     for _ in range(RAMP + 1):
         fly(desk)
-    assert not drives(desk)
+    assert not desk.drives
     assert desk.counters["encoder_faults"] == 1
     assert desk.state == "LOST"
 
@@ -140,7 +127,7 @@ def test_the_outputs_at_their_limits_are_full_drive_and_no_more(desk, psi_ref_ra
 
 def test_a_frozen_encoder_at_full_drive_ends_the_flight_after_a_second(desk):
     samples = 0
-    while drives(desk):
+    while desk.drives:
         fly(desk, 9.0)
         samples += 1
     assert samples == PROTOCOL.constant("ENCODER_STILL_PERIODS") + RAMP

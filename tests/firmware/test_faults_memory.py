@@ -7,8 +7,7 @@ import pytest
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
 from rig.link.frames import line_length
-from rig.programming.image import build_firmware
-from tests.firmware.box import DIGEST, stand_in_law
+from tests.firmware.box import DIGEST
 from tests.firmware.desk import MODES, STATES, Desk
 from tests.soak import SOAK
 
@@ -18,11 +17,6 @@ SAFE_SAMPLES = PROTOCOL.constant("HOST_LOSS_PERIODS") + 10  # the host is lost, 
 REASONS = {choice.code: choice.name for choice in PROTOCOL.enumeration("reason").choices}
 # link_incoming of link.h: the bytes of the longest line, rounded up to words, then length and overflow flag.
 INCOMING_BYTES = (max(line_length(message) for message in PROTOCOL.messages) + 3) // 4 * 4 + 8
-
-
-@pytest.fixture(scope="module")
-def stand_in() -> bytes:
-    return build_firmware(stand_in_law()).elf
 
 
 class Plane(Desk):
@@ -69,12 +63,6 @@ class Plane(Desk):
     def place(self) -> str:
         """Function and line of the next instruction."""
         return self.board.image.place(self.board.registers()[15])
-
-    @property
-    def drives(self) -> bool:
-        """Whether anything but 0 V reaches a motor."""
-        pwm = self.board.pwm()
-        return pwm.enabled and (pwm.main_ticks, pwm.tail_ticks) != (0, 0)
 
 
 def bits(first: int, last: int, seed: int) -> list[tuple[int, int]]:

@@ -10,21 +10,10 @@ from hypothesis import strategies as st
 
 from records.protocol import PROTOCOL
 from rig.link.frames import encode_frame
-from tests.firmware.box import Box, sample_words, word
+from tests.firmware.box import REFUSALS, Box, sample_words, word
 from tests.soak import SOAK
 
 EXAMPLES = 300 if SOAK else 60
-
-REFUSALS = (
-    "cobs_errors",
-    "too_long",
-    "too_short",
-    "crc_errors",
-    "wrong_version",
-    "unknown_type",
-    "wrong_length",
-    "stale",
-)
 
 
 def raw_frame(content: bytes) -> bytes:

@@ -7,16 +7,13 @@ import numpy as np
 import pytest
 
 from identification.fit.levenberg_marquardt import FIRST, LEAST, MARQUARDT, MOST, NIELSEN, trials
+from tests.identification.valley import valley
 
 
 @dataclass(frozen=True, eq=False)
 class At:
     x: np.ndarray
     cost: float
-
-
-def valley(x):
-    return np.array([10.0 * (x[1] - x[0] ** 2), 1.0 - x[0]])
 
 
 def moved(point, mu):

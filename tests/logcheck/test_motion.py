@@ -12,13 +12,7 @@ from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant, bind
 from tests.logcheck.test_parts import STEPS, log_of
-from tests.own_plants import WORKING
-from twinlaw import fly, load
-
-
-@pytest.fixture(scope="module")
-def arm(tmp_path_factory: pytest.TempPathFactory) -> BoundPlant:
-    return load(str(WORKING["plain"].write(tmp_path_factory.mktemp("arm"), "my_arm")))
+from twinlaw import fly
 
 
 @pytest.fixture(scope="module")

@@ -14,15 +14,9 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.logcheck.flight import clean, plant
 from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
-from tests.own_plants import WORKING
-from twinlaw import fly, load
+from twinlaw import fly
 
 OFF = 1334  # of 2001 rows: two thirds
-
-
-@pytest.fixture(scope="module")
-def arm(tmp_path_factory: pytest.TempPathFactory) -> BoundPlant:
-    return load(str(WORKING["plain"].write(tmp_path_factory.mktemp("arm"), "my_arm")))
 
 
 def kinds(arm: BoundPlant, log: RunLog) -> dict[str, float]:

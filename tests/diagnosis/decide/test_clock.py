@@ -12,18 +12,9 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.log import RunLog
 from records.reasons import DOUBTS, Note
-from sim.bind import BoundPlant
 from tests.diagnosis.arm import arm, arm_log
 from tests.diagnosis.conftest import RUB, SECONDS, SPRING, Fly
 from tests.soak import SOAK
-
-
-@pytest.fixture(scope="module")
-def library(plant: BoundPlant) -> EffectLibrary:
-    """That of the CE150 without effects that bring a state, whose filter takes ten seconds to build."""
-    whole = effect_library(plant)
-    kept = {name: effect for name, effect in whole.effects.items() if name not in whole.wide_names}
-    return replace(whole, effects=kept, wide_names=())
 
 
 def counted(log: RunLog, rate: float) -> RunLog:
@@ -38,9 +29,9 @@ def told(library: EffectLibrary, log: RunLog) -> tuple[Note, ...]:
 
 @pytest.mark.parametrize(("rate", "way"), [(1.05, "fast"), *([(0.95, "slow"), (1.02, "fast")] if SOAK else [])])
 def test_a_clock_that_runs_fast_or_slow_is_told_with_its_size(
-    library: EffectLibrary, fly: Fly, rate: float, way: str
+    stateless: EffectLibrary, fly: Fly, rate: float, way: str
 ) -> None:
-    (note,) = told(library, counted(fly(33, seconds=2.0 * SECONDS), rate))
+    (note,) = told(stateless, counted(fly(33, seconds=2.0 * SECONDS), rate))
     assert note.kind in DOUBTS
     assert note.numbers["clock_rate"] == pytest.approx(rate, abs=0.006)
     assert note.numbers["gain_nats"] > decisions.CLOCK_TOLD
@@ -49,9 +40,9 @@ def test_a_clock_that_runs_fast_or_slow_is_told_with_its_size(
 
 @pytest.mark.parametrize("effects", [None, *([SPRING, {"azimuth.coulomb": {"b": 0.004}}] if SOAK else [SPRING])])
 def test_a_rig_as_stated_or_one_that_lacks_something_has_no_other_clock(
-    library: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]] | None
+    stateless: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]] | None
 ) -> None:
-    assert told(library, fly(31, effects, SECONDS)) == ()
+    assert told(stateless, fly(31, effects, SECONDS)) == ()
 
 
 def test_an_arm_that_rubs_or_of_which_rates_are_hardly_known_has_no_other_clock() -> None:
@@ -61,12 +52,12 @@ def test_an_arm_that_rubs_or_of_which_rates_are_hardly_known_has_no_other_clock(
     assert told(effect_library(known_little), counted(arm_log(seed=32), 1.05)) == ()
 
 
-def test_a_clock_that_is_more_than_a_tenth_off_is_none(library: EffectLibrary, fly: Fly) -> None:
-    assert told(library, counted(fly(31, seconds=SECONDS), 1.25)) == ()
+def test_a_clock_that_is_more_than_a_tenth_off_is_none(stateless: EffectLibrary, fly: Fly) -> None:
+    assert told(stateless, counted(fly(31, seconds=SECONDS), 1.25)) == ()
 
 
-def test_times_on_another_clock_are_so_many_times_shorter(library: EffectLibrary, fly: Fly) -> None:
-    case = make_case(library, [counted(fly(31, seconds=2.0), 1.25)])
+def test_times_on_another_clock_are_so_many_times_shorter(stateless: EffectLibrary, fly: Fly) -> None:
+    case = make_case(stateless, [counted(fly(31, seconds=2.0), 1.25)])
     (was,), (found,) = case.flights, on_clock(case, 1.25).flights
     np.testing.assert_allclose(np.diff(found.filter_input.t_s), 0.01)
     assert found.step_s == pytest.approx(0.01)

@@ -18,7 +18,6 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput
 from records.log import RunLog
-from sim.bind import BoundPlant
 from tests.diagnosis.arm import arm, arm_log
 from tests.diagnosis.conftest import RUB, Fly
 from tests.plants import bound
@@ -31,14 +30,6 @@ EFFECTS = [
     {"azimuth.coulomb": {"b": 0.004}},
     {"tail_rotor.reverse_asymmetry": {"r": 0.4}},
 ]
-
-
-@pytest.fixture(scope="module")
-def library(plant: BoundPlant) -> EffectLibrary:
-    """That of the CE150 without effects that bring a state, whose filter takes ten seconds to build: of the arm a test asks for all."""
-    whole = effect_library(plant)
-    kept = {name: effect for name, effect in whole.effects.items() if name not in whole.wide_names}
-    return replace(whole, effects=kept, wide_names=())
 
 
 def logged(log: RunLog, slip: Misplaced) -> RunLog:
@@ -66,25 +57,25 @@ SLIPS = [
 
 @pytest.mark.parametrize(("slip", "named"), sampled(SLIPS, keep=[SLIPS[n] for n in (0, 3, 5)]))
 def test_columns_in_other_rows_are_refused_by_name(
-    library: EffectLibrary, fly: Fly, slip: Misplaced, named: str
+    stateless: EffectLibrary, fly: Fly, slip: Misplaced, named: str
 ) -> None:
     # One column alone shows half as much as both commands: twice the time, where all are asked.
     log = fly(31, seconds=2.0 * SECONDS if SOAK else SECONDS)
     with pytest.raises(BadInput, match=named):
-        told(library, logged(log, slip))
+        told(stateless, logged(log, slip))
 
 
-def test_a_column_of_which_a_short_log_tells_little_is_told_and_not_refused(library: EffectLibrary, fly: Fly) -> None:
+def test_a_column_of_which_a_short_log_tells_little_is_told_and_not_refused(stateless: EffectLibrary, fly: Fly) -> None:
     # Truth: u_M_V stands one row late; the flight is long enough for 25 nats and too short for 50.
-    assert told(library, logged(fly(31, seconds=SECONDS - 1.0), Misplaced((0,), 1))) == ["columns_late"]
+    assert told(stateless, logged(fly(31, seconds=SECONDS - 1.0), Misplaced((0,), 1))) == ["columns_late"]
 
 
 def test_commands_that_another_reading_of_the_rows_follows_half_as_well_are_told(
-    library: EffectLibrary, fly: Fly
+    stateless: EffectLibrary, fly: Fly
 ) -> None:
     # Truth: u_M_V stands one row late. Inputs that go straight from row to row are half a row early, and so half as good; what is 10 nats
     # likelier than that is told, what is not is left to it.
-    case = make_case(library, [logged(fly(31, seconds=SECONDS - 1.0), Misplaced((0,), 1))])
+    case = make_case(stateless, [logged(fly(31, seconds=SECONDS - 1.0), Misplaced((0,), 1))])
     nominal = plain_fit(case)
     (note,) = demand_rows(case, nominal, "the logs to explain")
     gain = note.numbers["gain_nats"]
@@ -92,18 +83,18 @@ def test_commands_that_another_reading_of_the_rows_follows_half_as_well_are_told
     assert demand_rows(case, nominal, "the logs", beaten=gain - 5.0) == ()
 
 
-def test_commands_in_their_rows_are_not_doubted(library: EffectLibrary, fly: Fly) -> None:
-    assert told(library, fly(31, seconds=SECONDS)) == []
+def test_commands_in_their_rows_are_not_doubted(stateless: EffectLibrary, fly: Fly) -> None:
+    assert told(stateless, fly(31, seconds=SECONDS)) == []
 
 
-def test_what_a_plant_may_be_itself_is_told_where_it_is_not_to_be_refused(library: EffectLibrary, fly: Fly) -> None:
-    assert told(library, logged(fly(31, seconds=SECONDS), Misplaced((0, 1), -1)), (LATE,)) == ["columns_early"]
+def test_what_a_plant_may_be_itself_is_told_where_it_is_not_to_be_refused(stateless: EffectLibrary, fly: Fly) -> None:
+    assert told(stateless, logged(fly(31, seconds=SECONDS), Misplaced((0, 1), -1)), (LATE,)) == ["columns_early"]
 
 
-def test_a_delay_that_was_found_explains_commands_that_seem_early(library: EffectLibrary, fly: Fly) -> None:
+def test_a_delay_that_was_found_explains_commands_that_seem_early(stateless: EffectLibrary, fly: Fly) -> None:
     """Truth: the columns of both commands stand two rows early, as if both acted two rows late."""
     delays = {"main_input.delay": {"tau": 0.02}, "tail_input.delay": {"tau": 0.02}}
-    case = make_case(library, [logged(fly(31, seconds=SECONDS), Misplaced((0, 1), -2))])
+    case = make_case(stateless, [logged(fly(31, seconds=SECONDS), Misplaced((0, 1), -2))])
     nominal = plain_fit(case)
     notes = demand_rows(case, nominal, "the logs to explain", (LATE,))
     assert [note.kind for note in notes] == ["columns_early"]
@@ -137,9 +128,9 @@ def test_where_a_row_does_not_show_that_is_told_with_figures() -> None:
 
 @pytest.mark.parametrize("effects", sampled(EFFECTS, keep=[]), ids=[next(iter(effects)) for effects in EFFECTS])
 def test_a_plant_that_lacks_something_is_not_taken_for_commands_logged_late(
-    library: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]]
+    stateless: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]]
 ) -> None:
-    assert "columns_late" not in told(library, fly(32, effects, SECONDS))
+    assert "columns_late" not in told(stateless, fly(32, effects, SECONDS))
 
 
 def test_an_arm_that_lacks_its_friction_is_not_taken_for_commands_logged_late() -> None:

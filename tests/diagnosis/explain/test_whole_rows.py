@@ -10,19 +10,11 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.library.effect_library import EffectLibrary, effect_library
+from diagnosis.library.effect_library import EffectLibrary
 from records.diagnosis import Firmware
-from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 
 SECONDS = 12.0
-
-
-@pytest.fixture(scope="module")
-def library(plant: BoundPlant) -> EffectLibrary:
-    whole = effect_library(plant)
-    kept = {name: effect for name, effect in whole.effects.items() if name not in whole.wide_names}
-    return replace(whole, effects=kept, wide_names=())
 
 
 def _fitted(case: Case, effect: str, tau_s: float) -> FittedHypothesis:
@@ -34,11 +26,11 @@ def _fitted(case: Case, effect: str, tau_s: float) -> FittedHypothesis:
 
 @pytest.mark.parametrize(("rows", "counted"), [(1, "one row"), (2, "two rows")])
 def test_commands_so_many_rows_early_are_told_beside_the_delay_that_looks_alike(
-    library: EffectLibrary, fly: Fly, rows: int, counted: str
+    stateless: EffectLibrary, fly: Fly, rows: int, counted: str
 ) -> None:
     """Truth: both commands stand 1, or 2, rows early, 10 ms each; code that gives the log to the bit shows that they do not."""
     log = fly(31, seconds=SECONDS)
-    case = make_case(library, [replace(log, u=log.u[np.minimum(np.arange(len(log.u)) + rows, len(log.u) - 1)])])
+    case = make_case(stateless, [replace(log, u=log.u[np.minimum(np.arange(len(log.u)) + rows, len(log.u) - 1)])])
     chosen = _fitted(case, "loop.delay", 0.01 * rows)
     (note,) = whole_rows(case, chosen, None)
     assert note.kind == "columns_early"
@@ -47,9 +39,9 @@ def test_commands_so_many_rows_early_are_told_beside_the_delay_that_looks_alike(
     assert list(whole_rows(case, chosen, Firmware(True, True, None, None))) == []
 
 
-def test_a_delay_between_rows_is_the_plants_alone(library: EffectLibrary, fly: Fly) -> None:
+def test_a_delay_between_rows_is_the_plants_alone(stateless: EffectLibrary, fly: Fly) -> None:
     # Truth: 15 ms, one row and a half, as sure as these logs make a delay.
-    case = make_case(library, [fly(31, seconds=SECONDS)])
+    case = make_case(stateless, [fly(31, seconds=SECONDS)])
     between = fit(case, plain_fit(case).hypothesis.with_effects({"loop.delay": {"tau": 0.015}}), rounds=0)
     assert between is not None
     assert list(whole_rows(case, as_fitted(case, between), None)) == []

@@ -6,11 +6,7 @@ import pytest
 from identification.frequency.match.cost import N_OMEGA, chosen_points, coherence_weight, good_range, residual, target
 from identification.frequency.match.secant import restarted, secant_search
 from identification.frequency.responses.conditioned import Responses
-
-
-def valley(theta):
-    """Rosenbrock's valley as a sum of squares: minimum 0 at (1, 1)."""
-    return np.array([10.0 * (theta[1] - theta[0] ** 2), 1.0 - theta[0]])
+from tests.identification.valley import valley
 
 
 def test_secants_find_the_end_of_a_bent_valley_without_a_derivative():

@@ -1,17 +1,17 @@
 """MC/DC of generated C and control path: complete as they are, and a decision that nothing turns is told."""
 
 import subprocess
-from functools import cache
 from pathlib import Path
 
 import pytest
 
 from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
-from records.protocol import PROTOCOL, protocol_of
+from records.protocol import protocol_of
 from tests.codegen.test_any_loops import any_table
 from tests.law_tables import ce150_table
 from tests.soak import SOAK, sampled
+from tests.verification.proofs.ce150 import subject
 from toolchain.host import run_zig
 from verification.proofs.conformance import coverage
 from verification.proofs.conformance.coverage import DEVIATIONS, DRIVERS, prove, stimuli_words
@@ -22,12 +22,6 @@ from verification.proofs.tools import CLANG
 from verification.stimuli import standard_stimuli
 
 needs_clang = pytest.mark.skipif(not CLANG.found(), reason=f"clang-19 is not installed ({CLANG.remedy})")
-
-
-@cache
-def subject(arithmetic: str = "float32") -> Subject:
-    generated = {**generate_law(ce150_table(), arithmetic), **protocol_source(PROTOCOL)}
-    return Subject(ce150_table(), generated, b"", arithmetic=arithmetic)
 
 
 @needs_clang

@@ -1,7 +1,6 @@
 """MISRA findings: all justified, no justification idle; an unjustified line and an idle deviation are told."""
 
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -9,10 +8,11 @@ import pytest
 from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
 from records.loops import Analogue, Pins
-from records.protocol import PROTOCOL, protocol_of
+from records.protocol import protocol_of
 from tests.codegen.test_any_loops import any_table
 from tests.law_tables import ce150_table
 from tests.soak import sampled
+from tests.verification.proofs.ce150 import subject
 from verification.proofs import sources
 from verification.proofs.conformance.misra import DEVIATIONS, findings_in, prove
 from verification.proofs.deviations import Deviation, Finding, judge, load_deviations
@@ -20,12 +20,6 @@ from verification.proofs.subject import Subject
 from verification.proofs.tools import CPPCHECK
 
 needs_cppcheck = pytest.mark.skipif(not CPPCHECK.found(), reason=f"cppcheck is not installed ({CPPCHECK.remedy})")
-
-
-@cache
-def subject(arithmetic: str = "float32") -> Subject:
-    generated = {**generate_law(ce150_table(), arithmetic), **protocol_source(PROTOCOL)}
-    return Subject(ce150_table(), generated, b"", arithmetic=arithmetic)
 
 
 @needs_cppcheck
