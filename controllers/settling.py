@@ -34,7 +34,7 @@ STEP, SETTLED = 0.05, 0.0375
 
 def demand_settling(bound: BoundPlant, table: LawTable[Any], law: Controller, expected: str) -> None:
     """Raise BadInput naming operating point, axis and error where the law does not settle on the plant without added effects."""
-    seen = without_effects(bound) if bound.effects else bound
+    seen = without_effects(bound)
     settings = read_settings(seen)
     for scheduled_rad in begins_rad(table):
         error_rad = last_error(seen, settings, table, law, scheduled_rad)

@@ -35,7 +35,6 @@ from diagnosis.standing import confirmed_by, is_noise, may_be_missing, of_conseq
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
 from records.reasons import Note
-from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
 
@@ -67,11 +66,9 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
 
 def _within_ranges(bound: BoundPlant, material: Material) -> Material:
     """The material with nothing read where a sensor's range ends, as the logs to explain show."""
-    plain, split = without_effects(bound) if bound.effects else bound, len(material.logs)
+    split = len(material.logs)
     names = material.names or [f"log {number + 1}" for number in range(split)]
-    ends = tuple(range_ends(plain, material.logs, material.used[:split], names))
-    if not ends:
-        return material
+    ends = tuple(range_ends(bound, material.logs, material.used[:split], names))
     logs, holdout = ([within_ranges(log, ends) for log in some] for some in (material.logs, material.holdout))
     return replace(material, logs=logs, holdout=holdout, notes=(*material.notes, *(end.note for end in ends)))
 

@@ -30,7 +30,7 @@ from sim.bind import BoundPlant
 
 def seen_of(bound: BoundPlant, material: Material) -> Seen:
     """Ask whether there is a gap at all."""
-    library = effect_library(without_effects(bound) if bound.effects else bound)
+    library = effect_library(without_effects(bound))
     library.prepare()
     split = len(material.logs)
     case = make_case(library, material.logs, material.used[:split], bound)

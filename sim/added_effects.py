@@ -52,7 +52,9 @@ def with_effects(bound: BoundPlant, values: Sizes, *, sd: Sizes | None = None, s
 
 
 def without_effects(bound: BoundPlant) -> BoundPlant:
-    """The nominal plant: its parameters come first."""
+    """The nominal plant: its parameters come first. A plant that has no effects is the same object, whose kernel may be made already."""
+    if not bound.effects:
+        return bound
     nominal = bound.nominal
     count = len(nominal.parameter_symbols)
     return BoundPlant(replace(bound.plant, effects={}), nominal, bound.p[:count], bound.sd[:count])

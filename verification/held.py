@@ -27,7 +27,7 @@ def demand_held(bound: BoundPlant, table: FlownTable, arithmetic: str) -> None:
     """Raise BadInput naming operating point, axis and both errors where the generated law ends a flight from rest farther off than the
     same law in double precision; see controllers/settling.py for the flights.
     """
-    seen = without_effects(bound) if bound.effects else bound
+    seen = without_effects(bound)
     settings = read_settings(seen)
     law = HostLaw(loading.generate(table, arithmetic), arithmetic, loops=table.loops)
     for begin_rad in begins_rad(table):

@@ -74,7 +74,7 @@ def largest_output(wishes: AxisSettings) -> float:
 
 def points_of(bound: BoundPlant, settings: DesignSettings) -> Points:
     """The operating points of the nominal plant: controllers are designed without added effects. Raises BadInput for one out of reach."""
-    seen = without_effects(bound) if bound.effects else bound
+    seen = without_effects(bound)
     psi_rad = grid(settings)
     points = equilibria(seen, settings, psi_rad)
     return Points(seen, settings, psi_rad, points, tuple(linearise(seen, point) for point in points))

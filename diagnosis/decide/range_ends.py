@@ -25,6 +25,7 @@ from logcheck.stretches import part
 from records.log import RunLog
 from records.reasons import Note
 from records.text.units import unit_of
+from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
 BEFORE_ROWS = 400  # to know the plant's state and numbers by
@@ -53,7 +54,9 @@ class _Stand:
 def range_ends(
     bound: BoundPlant, logs: Sequence[RunLog], used: Sequence[Rows | None], names: Sequence[str]
 ) -> Iterator[RangeEnd]:
-    """The ends of ranges at which an output of the logs stood, by so many nats as RANGE_ENDS asks for."""
+    """The ends of ranges at which an output of the logs stood, as the plant without added effects foretells, by so many nats as RANGE_ENDS
+    asks for."""
+    bound = without_effects(bound)
     library, stops = effect_library(bound), plant_facts(bound).stops
     for place, column in enumerate(bound.model.outputs):
         read = [log.column(column)[np.isfinite(log.column(column))] for log in logs]

@@ -45,7 +45,7 @@ class Lookahead:
     """
 
     def __init__(self, bound: BoundPlant, locked: Sequence[str] = ()) -> None:
-        self._library = effect_library(without_effects(bound) if bound.effects else bound)
+        self._library = effect_library(without_effects(bound))
         self._bound = bound
         self._locked = tuple(locked)
         self._rows: list[LiveRow] = []

@@ -54,7 +54,7 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
     bound = load_bound(asked.plant)
     if is_log(asked.port):
         log = load_log(Path(asked.port), log_columns(bound.model))
-        looked = examine([log], without_effects(bound) if bound.effects else bound, names=[Path(asked.port).stem])
+        looked = examine([log], without_effects(bound), names=[Path(asked.port).stem])
         demand(looked, OTHER_NUMBERS)
         odd = "".join(f"; {note.said}" for note in looked.notes)
         first_s = float(log.t_s[0])

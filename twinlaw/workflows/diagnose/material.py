@@ -35,7 +35,7 @@ def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) ->
 
 def material_of(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) -> Material:
     """The same of a plant that is loaded; raises BadInput where the logs cannot be used."""
-    return _material(without_effects(bound) if bound.effects else bound, logs, holdout)
+    return _material(without_effects(bound), logs, holdout)
 
 
 def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) -> Material:

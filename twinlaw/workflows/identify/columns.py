@@ -36,14 +36,13 @@ def usable_inputs(
 def asked_for_ranges(inputs: Inputs, bound: BoundPlant) -> Inputs:
     """The inputs with nothing read where a sensor's range ends, as the logs to fit show, and what is to be said of that."""
     with console.stage("asking whether a sensor's range ends where it stands"):
-        ends = tuple(
-            range_ends(_plain(bound), list(inputs.logs.values()), [None] * len(inputs.logs), list(inputs.logs))
-        )
-    logs, holdout = (
+        logs, names = list(inputs.logs.values()), list(inputs.logs)
+        ends = tuple(range_ends(bound, logs, [None] * len(logs), names))
+    fitted, kept = (
         {name: within_ranges(log, ends) for name, log in some.items()} for some in (inputs.logs, inputs.holdout)
     )
     notes = tuple(end.note.said for end in ends if end.note.said)
-    return replace(inputs, logs=logs, holdout=holdout, notes=(*inputs.notes, *notes))
+    return replace(inputs, logs=fitted, holdout=kept, notes=(*inputs.notes, *notes))
 
 
 def asked_for_columns(inputs: Inputs, bound: BoundPlant) -> Inputs:
@@ -60,15 +59,11 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
     with another, or moved by rows."""
     if not logs:
         return ()
-    library, where = effect_library(_plain(bound)), ", ".join(logs)
+    library, where = effect_library(without_effects(bound)), ", ".join(logs)
     busiest = make_case(library, [where_most_moves(log) for log in logs.values()], stated=bound)
     nominal = plain_fit(busiest)
     told = demand_wiring(busiest, nominal, plain_fit, where)
     return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)), *clock_in_doubt(busiest, nominal))
-
-
-def _plain(bound: BoundPlant) -> BoundPlant:
-    return without_effects(bound) if bound.effects else bound
 
 
 def where_most_moves(log: RunLog) -> RunLog:
