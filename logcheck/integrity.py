@@ -13,10 +13,10 @@ from logcheck.between import duplicate_findings, plant_pair_findings
 from logcheck.breaks import break_findings
 from logcheck.facts import PlantFacts, plant_facts
 from logcheck.finding import REFUSE, Finding, Found, Rows, beginning, without
-from logcheck.foretold import foretold_findings
 from logcheck.inputs import input_findings
 from logcheck.plant import plant_findings
 from logcheck.stamps import Timing, timing, timing_findings
+from logcheck.stands.foretold import foretold_findings
 from logcheck.values import Excitation, Saturation, excitations, saturations, value_findings
 from records.errors import BadInput
 from records.log import RunLog

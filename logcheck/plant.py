@@ -10,7 +10,7 @@ from logcheck.finding import EXCLUDE, NOTE, REFUSE, Finding, Found, in_words
 from logcheck.grid import grid_findings
 from logcheck.leaps.motion import exchange_findings, motion_findings
 from logcheck.leaps.turned import turned_findings
-from logcheck.standing import locked_findings, off_findings
+from logcheck.stands.standing import locked_findings, off_findings
 from logcheck.units.angle import angle_unit
 from logcheck.units.derived import rate_unit, reference_unit, rotor_unit
 from logcheck.units.inputs import input_unit, machine_unit

@@ -7,13 +7,13 @@ from types import MappingProxyType
 import numpy as np
 
 from logcheck import thresholds
-from logcheck.clipped import clipped_findings
-from logcheck.dead import dead_findings, read_again
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, beginning, in_words, without
 from logcheck.held import held_findings, stale_findings
 from logcheck.leaps.motion import wrap_findings
 from logcheck.leaps.seams import seam_findings
-from logcheck.standing import end_findings
+from logcheck.stands.clipped import clipped_findings
+from logcheck.stands.dead import dead_findings, read_again
+from logcheck.stands.standing import end_findings
 from logcheck.zeros import zero_findings
 from records.log import RunLog
 from sim.columns import reference_name

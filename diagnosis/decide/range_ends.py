@@ -20,7 +20,7 @@ from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from logcheck import thresholds
 from logcheck.facts import plant_facts
-from logcheck.stands import runs
+from logcheck.stands.column import runs
 from logcheck.stretches import part
 from records.log import RunLog
 from records.reasons import Note

@@ -9,7 +9,7 @@ from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, beginning
 from diagnosis.filter.kalman import Noise
 from diagnosis.library.effect_library import EffectLibrary
-from logcheck.standing import RUN_UP_S
+from logcheck.stands.standing import RUN_UP_S
 
 Array = NDArray[np.float64]
 START_S = 0.1

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from logcheck import thresholds
-from logcheck.dead import amount
 from logcheck.finding import Array, Finding, Found, Rows
-from logcheck.stands import runs
+from logcheck.stands.column import runs
+from logcheck.stands.dead import amount
 from records.log import RunLog
 from sim.columns import reference_name
 

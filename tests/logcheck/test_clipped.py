@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from logcheck.clipped import clipped_findings
 from logcheck.integrity import as_read, examine
+from logcheck.stands.clipped import clipped_findings
 from records.log import RunLog
 from sim.columns import log_columns
 from sim.simulate import simulate

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from logcheck.between import duplicate_findings, holding_ratio, plant_pair_findings, shared_rows
-from logcheck.dead import amount, dead_findings, read_again
 from logcheck.facts import plant_facts
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Found, in_words
 from logcheck.grid import grid_step, printed_digits
@@ -16,7 +15,8 @@ from logcheck.leaps.motion import motion_findings
 from logcheck.leaps.seams import seam_findings
 from logcheck.plant import plant_findings
 from logcheck.stamps import timing, timing_findings
-from logcheck.standing import locked_findings
+from logcheck.stands.dead import amount, dead_findings, read_again
+from logcheck.stands.standing import locked_findings
 from logcheck.units.angle import angle_unit
 from logcheck.units.derived import rate_unit, reference_unit
 from logcheck.units.inputs import input_unit, machine_unit

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from logcheck.dead import dead_findings, read_again
 from logcheck.integrity import examine
 from logcheck.leaps.seams import seam_findings
+from logcheck.stands.dead import dead_findings, read_again
 from recordings.datasets.files import datasets_folder
 from recordings.datasets.library import IMPORTERS, import_record, records
 from records.errors import BadInput

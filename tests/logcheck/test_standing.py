@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from logcheck.facts import plant_facts
-from logcheck.foretold import foretold_findings
 from logcheck.integrity import examine
-from logcheck.standing import end_findings, off_findings
+from logcheck.stands.foretold import foretold_findings
+from logcheck.stands.standing import end_findings, off_findings
 from logcheck.stretches import part
 from records.log import RunLog
 from sim.bind import BoundPlant

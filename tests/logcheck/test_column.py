@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from logcheck.stands import Readings, evenness, is_set_going, runs
+from logcheck.stands.column import Readings, evenness, is_set_going, runs
 
 
 def column(values: np.ndarray) -> Readings:

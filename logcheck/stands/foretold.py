@@ -13,7 +13,7 @@ from logcheck import thresholds
 from logcheck.ahead import read_ahead, states_along, with_axes_as_read
 from logcheck.facts import PlantFacts
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
-from logcheck.standing import RUN_UP_S, last_stand
+from logcheck.stands.standing import RUN_UP_S, last_stand
 from records.log import RunLog
 from records.text.units import unit_of
 from sim.bind import BoundPlant

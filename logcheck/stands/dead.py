@@ -14,7 +14,7 @@ import numpy as np
 
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
-from logcheck.stands import Readings, evenness, hardly_repeats, is_set_going, moves_far, readings_of, runs
+from logcheck.stands.column import Readings, evenness, hardly_repeats, is_set_going, moves_far, readings_of, runs
 from records.log import RunLog
 from records.text.units import unit_of
 

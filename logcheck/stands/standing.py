@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from logcheck import thresholds
-from logcheck.dead import amount
 from logcheck.finding import EXCLUDE, REFUSE, Array, Finding, Found, Rows
+from logcheck.stands.dead import amount
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.model import Axis
