@@ -264,10 +264,13 @@ def _repeated(flight: ReplayedLog, found: Explanation) -> Told:
 
 def _not_logged(flight: ReplayedLog, found: Explanation) -> Told:
     incidents = found.trace.incidents
-    count = sum(entry.samples for entry in incidents)
+    lacks = np.isnan(flight.angle_rad).any(axis=1)  # also where the law's answer is the same without
+    for entry in incidents:
+        lacks[entry.first : entry.first + entry.samples] = True
+    count = int(lacks.sum())
     what = "a sample" if count == 1 else f"{count} samples"
     sentence = (
-        f"the log lacks {what} that the firmware had, first at {flight.t_s[incidents[0].first]:.6g} s; with readings that fit there, "
+        f"the log lacks {what} that the firmware had, first at {flight.t_s[np.argmax(lacks)]:.6g} s; with readings that fit there, "
         "and everywhere else, the firmware is cleared"
     )
     return Told(UNLOGGED, sentence, tuple((UNLOGGED, float(flight.t_s[entry.first])) for entry in incidents))

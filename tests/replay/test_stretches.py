@@ -69,9 +69,12 @@ def test_behind_lost_rows_the_law_goes_on_from_what_the_log_tells() -> None:
 def test_single_cells_that_are_empty_are_readings_that_the_log_lacks() -> None:
     log = own()
     y = log.y.copy()
-    y[np.random.default_rng(2).random(len(y)) < 0.1, 0] = np.nan
+    hidden = np.random.default_rng(2).random(len(y)) < 0.1
+    y[hidden, 0] = np.nan
     found = replay_stretches(replace(log, y=y), TABLE)
     assert (found.bit_exact, found.cause) == (False, "sample_not_logged")
+    said = f"the log lacks {hidden.sum()} samples that the firmware had, first at {log.t_s[hidden][0]:.6g} s"
+    assert said in (found.sentence or "")
     assert "the firmware is cleared" in (found.sentence or "")
 
 
