@@ -101,8 +101,9 @@ def _in_order(channel: Channel, name: str, where: str) -> tuple[Array, Array]:
     late = np.flatnonzero(~(np.diff(t_s) > 0.0))
     if late.size or not np.all(np.isfinite(t_s)):
         row = int(late[0]) if late.size else 0
-        got = f"{t_s[row + 1] if t_s.size > 1 else t_s[0]:.9g} s in row {row + 2} after {t_s[row]:.9g} s"
-        period_s = (t_s[-1] - t_s[0]) / (t_s.size - 1)
+        time = f"{t_s[row + 1] if t_s.size > 1 else t_s[0]:.9g} s".replace("nan s", "no time")
+        got = f"{time} in row {row + 2} after {t_s[row]:.9g} s"
+        period_s = _mean_step_s(t_s)
         step = (
             f"{period_s:.6g}*row for rows so far apart on average"
             if period_s > 0.0
@@ -111,6 +112,13 @@ def _in_order(channel: Channel, name: str, where: str) -> tuple[Array, Array]:
         remedy = f"say --column t_s={step}; of several recordings in one file give each as its own"
         raise BadInput(f"times of {name}", where, got, "times that increase", remedy)
     return t_s, channel.values
+
+
+def _mean_step_s(t_s: Array) -> float:
+    """The step of rows whose stamps are coarser than they are apart: between the first and the last of which it is known that they begin
+    one; 0 where there are none, or the times go back."""
+    begin = 1 + np.flatnonzero(np.diff(t_s) > 0.0)
+    return float((t_s[begin[-1]] - t_s[begin[0]]) / (begin[-1] - begin[0])) if begin.size > 1 else 0.0
 
 
 def _instants(clocks: list[Array], where: str, span: Span, channels: Mapping[str, Channel]) -> Array:

@@ -52,6 +52,18 @@ def _size(channel: Channel) -> int:
     return int(channel.values.size)
 
 
+def to_the_last_time(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], list[str]]:
+    """The channels without the samples behind the last that bears a time, as a line of sums below a table does, and what is said of it."""
+    kept, left_out = dict(channels), 0
+    for name, channel in channels.items():
+        timed = np.flatnonzero(np.isfinite(channel.t_s)) if channel.t_s is not None else np.zeros(0, np.int64)
+        behind = _size(channel) - 1 - int(timed[-1]) if timed.size else 0
+        if behind:
+            kept[name] = taken(channel, np.arange(_size(channel)) <= timed[-1])
+            left_out = max(left_out, behind)
+    return kept, [f"{counted(left_out, 'rows')} without a time at the end left out"] if left_out else []
+
+
 def on_one_clock(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], list[str]]:
     """The channels with times that count on where they begin again, and what is to be said of it.
 

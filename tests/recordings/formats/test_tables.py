@@ -239,6 +239,21 @@ def test_a_sum_without_a_label_behind_an_empty_line_is_no_row(tmp_path: Path) ->
     assert any("left out, from line 53 on" in told for told in done.found)
 
 
+def test_a_sum_that_has_no_time_is_no_row(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(HEAD + "\n".join(_rows()) + "\n,5.1,1.8,10.2,19.8\n")
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    np.testing.assert_allclose(done.log.t_s, T_S)
+    assert "1 row without a time at the end left out" in done.found
+
+
+def test_the_step_that_is_proposed_for_stamps_of_whole_seconds_is_that_of_the_rows(tmp_path: Path) -> None:
+    """Truth: rows 0.1 s apart from 0.5 s on, written down with whole seconds: 5 rows of 0, 10 of 1, 5 of 2."""
+    rows = [f"{int(0.5 + 0.1 * row + 1e-9)},5,1.8,{row},{row}" for row in range(20)]
+    (tmp_path / "run.csv").write_text(HEAD + "\n".join(rows) + "\n")
+    with pytest.raises(BadInput, match=r"t_s=0\.1\*row"):
+        imported_here(tmp_path / "run.csv", ColumnMapping())
+
+
 @pytest.mark.parametrize(("cut", "rows"), [(0, 50), (3, 49), (8, 49)])
 def test_a_last_row_that_ends_within_a_number_is_left_out(cut: int, rows: int, tmp_path: Path) -> None:
     """Truth: no line end stands behind the last row; its last number has all of its digits, or lacks some, or all."""
