@@ -112,3 +112,16 @@ def test_an_output_that_is_read_no_more_from_its_rest_on_is_told_by_what_the_pla
     (found,) = foretold_findings(replace(log, y=y), "a", plant(), facts, none)
     assert (found.finding.column, found.finding.start_s) == ("psi_rad", pytest.approx(log.t_s[827]))
     assert list(foretold_findings(part(log, slice(0, 882)), "a", plant(), facts, none[:882])) == []
+
+
+def test_a_range_that_ends_where_an_axis_is_held_beyond_it_is_told_by_what_the_plant_foretells() -> None:
+    """Truth: psi is read down to -0.3 rad, and from 5.3 s to 9.3 s the flight holds it at -0.42 rad."""
+    log, facts, none = clean(), plant_facts(plant()), np.zeros(len(clean().t_s), bool)
+    level = log.y[np.argmin(np.abs(log.y[:, 0] + 0.3)), 0]
+    y = log.y.copy()
+    y[:, 0] = np.maximum(y[:, 0], level)
+    (found,) = foretold_findings(replace(log, y=y), "a", plant(), facts, none)
+    assert (found.finding.kind, found.finding.column) == ("clipped_sensor", "psi_rad")
+    assert found.excluded is not None
+    np.testing.assert_array_equal(found.excluded, log.y[:, 0] <= level)
+    assert list(foretold_findings(log, "a", plant(), facts, none)) == []
