@@ -264,9 +264,8 @@ def _repeated(flight: ReplayedLog, found: Explanation) -> Told:
 
 def _not_logged(flight: ReplayedLog, found: Explanation) -> Told:
     incidents = found.trace.incidents
-    lacks: NDArray[np.bool_] = np.asarray(
-        np.isnan(flight.angle_rad).any(axis=1)
-    )  # also where the law's answer is the same without
+    # Also where the law's answer is the same without.
+    lacks: NDArray[np.bool_] = np.asarray(np.isnan(flight.angle_rad).any(axis=1))
     for entry in incidents:
         lacks[entry.first : entry.first + entry.samples] = True
     count = int(lacks.sum())
