@@ -49,7 +49,7 @@ def _many(run: Run, number: int, y_model: Array) -> tuple[Panel, Panel]:
     )
     return (
         Panel(f"{name}{unit}", (Curve(t_s, measured, "measured", GREY), Curve(t_s, model, "model", ORANGE, "--"))),
-        Panel(f"left{unit}", (Curve(t_s, measured - model, "", BLUE, width=0.8),), ((0.0, ""),)),
+        Panel(f"residual{unit}", (Curve(t_s, measured - model, "", BLUE, width=0.8),), ((0.0, ""),)),
     )
 
 
@@ -61,7 +61,7 @@ def _few(run: Run, number: int, y_model: Array) -> tuple[Panel, Panel]:
         Panel(
             f"{name}{unit}", (Curve(x, measured, "measured", GREY, "", "o"), Curve(x, model, "model", ORANGE, "", "x"))
         ),
-        Panel(f"left{unit}", (Curve(x, measured - model, "", BLUE, "", "o"),), ((0.0, ""),)),
+        Panel(f"residual{unit}", (Curve(x, measured - model, "", BLUE, "", "o"),), ((0.0, ""),)),
     )
 
 
