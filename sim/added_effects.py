@@ -8,12 +8,11 @@ from records.pages import page
 from records.plant import Parameter
 from sim.bind import BoundPlant, bind
 from sim.composition.build import carried, model_with, paths_with
-from sim.composition.table import Entries, checked, effects_section, find_effect, plain_values
+from sim.composition.table import checked, effects_section, find_effect, plain_values
 from sim.effect import Effect, Values, coefficient
 from sim.effects import effects_for
 from sim.model import Model
 from sim.plants import MODELS
-from sim.start import start_state
 
 Sizes = Mapping[str, Values]  # by effect and symbol
 
@@ -146,23 +145,3 @@ def _check_symbol(effect: Effect, symbol: str, where: str) -> None:
         raise BadInput(
             f"parameter {symbol!r}", where, "an unknown name", f"one of {known}", f"see {page('effects.md')}"
         )
-
-
-__all__ = [
-    "Effect",
-    "Entries",
-    "Sizes",
-    "coefficient",
-    "coefficient_index",
-    "combined",
-    "effect_values",
-    "effects_for",
-    "every_effect",
-    "library",
-    "linear_part",
-    "redundant",
-    "start_state",
-    "with_effects",
-    "with_values",
-    "without_effects",
-]

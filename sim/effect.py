@@ -221,11 +221,6 @@ class Effect:
         return self.filter_state is not None and self.filter_state.noise is not None
 
     @property
-    def is_random(self) -> bool:
-        """Whether each run has it anew, so that no prediction can know it."""
-        return self.loses_commands or self.is_noise
-
-    @property
     def reads_late(self) -> bool:
         """Whether a filter carries it as a state that follows an output, and reads that."""
         return self.filter_state is not None and bool(self.filter_state.follows)

@@ -1,6 +1,5 @@
 """Inputs and states on which executions of the law are compared: seeded, and chosen to be nasty."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -197,8 +196,3 @@ def _held_where_not(change: NDArray[np.bool_], levels: NDArray[np.float64]) -> N
 
 def _bits(numbers: Numbers) -> Bits:
     return np.ascontiguousarray(numbers, dtype=np.float32).view(np.uint32)
-
-
-def total_steps(stimuli: Sequence[Stimulus]) -> int:
-    """Control steps of all stimuli together."""
-    return sum(stimulus.steps for stimulus in stimuli)

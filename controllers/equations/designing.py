@@ -12,7 +12,6 @@ from design.linearise import linearise, of_loops, subsystem
 from design.operating_points import equilibria, grid
 from design.settings import AxisSettings, DesignSettings
 from design.table import frame_entries
-from records.errors import BadInput
 from records.law_table import AxisTable, LawTable
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
@@ -20,7 +19,6 @@ from sim.equilibrium import OperatingPoint
 
 Array = NDArray[np.float64]
 G = TypeVar("G")
-STATES = 3  # of an axis behind one rotor lag
 # Beyond so many times the largest reference a remembered output comes from a broken state: a rig that is thrown off, or turned once more,
 # is not so far away.
 OUTPUT_RANGES = 16.0
@@ -40,17 +38,6 @@ class Points:
         """The part of each from the axis' input to its angle."""
         loops = self.settings.loops
         return tuple(subsystem(self.bound, plant, self.settings.loop(name), loops) for plant in self.linear)
-
-    def behind_one_lag(self, name: str) -> tuple[LinearPlant, ...]:
-        """The same of an axis behind one rotor lag; raises BadInput for another."""
-        parts = self.axis(name)
-        for part in parts:
-            if len(part.A) != STATES:
-                raise BadInput(
-                    f"{name} axis", f"plant {self.bound.plant.name!r}", f"{len(part.A)} states", f"{STATES}: a rotor with one lag",
-                    "design this controller on another plant, and fly this one with --table",
-                )  # fmt: skip
-        return parts
 
     def sampled(self, name: str) -> tuple[SampledPlant, ...]:
         """The axis' parts, sampled with a zero-order hold."""

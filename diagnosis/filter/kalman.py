@@ -281,12 +281,6 @@ def _double(array: ArrayLike) -> Array:
     return np.ascontiguousarray(array, dtype=float)
 
 
-def compiled_filter(model: Model) -> Filter:
-    """The filter of `model`, compiled once for each content; raises BadInput when the compiler refuses."""
-    sizes = {"states": len(model.states), "outputs": len(model.outputs)}
-    return open_filter(build_filter(model.name, equations_text(model)), sizes, tuple(axis.name for axis in model.axes))
-
-
 def equations_text(model: Model) -> CText:
     """What the filter is compiled with of `model`."""
     return CText("model.h", model_header(model))

@@ -31,14 +31,12 @@ class Stage:
     aids: Belief
 
 
-def identify_staged(
-    bound: BoundPlant, experiments: Sequence[Experiment], limits: Mapping[str, tuple[float, float]] | None = None
-) -> tuple[Stage, ...]:
+def identify_staged(bound: BoundPlant, experiments: Sequence[Experiment]) -> tuple[Stage, ...]:
     """All stages in order, from the plant's values; raises BadInput for a wrong plant, mount or lock."""
     stages: list[Stage] = []
     for experiment in in_order(experiments):
         belief = stages[-1].belief if stages else NOTHING
-        stages.append(identify_stage(bound, experiment, belief, limits))
+        stages.append(identify_stage(bound, experiment, belief))
     return tuple(stages)
 
 

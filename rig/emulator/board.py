@@ -171,9 +171,9 @@ class EmulatedBoard:
         """Number of bytes that `uart_read` would give."""
         return int(self._status().host_bytes)
 
-    def uart_read_timed(self, most: int | None = None) -> list[ReceivedByte]:
+    def uart_read_timed(self) -> list[ReceivedByte]:
         """Bytes that have completely left the board, each with the end of its stop bit."""
-        values, ends_ps, errors = self._received(most)
+        values, ends_ps, errors = self._received(None)
         rows = zip(values, ends_ps, errors, strict=True)
         return [ReceivedByte(value, end / PS_PER_S, bool(error & 1), bool(error & 2)) for value, end, error in rows]
 

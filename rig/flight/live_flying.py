@@ -1,6 +1,5 @@
 """A board that flies on its own sensors, watched sample by sample: references go to it, telemetry comes back. The rotors turn."""
 
-import math
 from typing import Protocol
 
 from records.errors import BadInput
@@ -15,7 +14,6 @@ from rig.link.replies import Health, Telemetry, state_name
 from sim.runs.stepped import SteppedPlant
 from sim.wiring import Wiring
 
-UNKNOWN = (math.nan, math.nan)
 OLD_FRAMES = 1000  # telemetry from before an ARM, at most
 
 

@@ -152,9 +152,9 @@ class BoardClient:
         return frame
 
 
-def asked_identity(url: str, *, timeout_s: float = DEFAULT_TIMEOUT_S) -> Identity:
+def asked_identity(url: str) -> Identity:
     """Who the board at `url` is, whatever its table and arithmetic; raises BadInput when the port is not there or silent."""
-    port = open_port(url, timeout_s=timeout_s)
+    port = open_port(url, timeout_s=DEFAULT_TIMEOUT_S)
     try:
         return _introduced(Line(port, url, FrameReceiver(PROTOCOL)))
     finally:

@@ -205,6 +205,3 @@ class BoardReset(Fault):
     """With probability `rate` the board's reset pin is pulled in the middle of a write."""
 
     rate: float = 1.0
-
-
-PhysicalFault = Noise | StuckLine | BaudMismatch

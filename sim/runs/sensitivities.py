@@ -9,8 +9,9 @@ import sympy
 from numpy.typing import ArrayLike, NDArray
 
 from records.errors import BadInput
-from sim.added_effects import coefficient, library, with_values
+from sim.added_effects import library, with_values
 from sim.bind import BoundPlant
+from sim.effect import coefficient
 from sim.kernel.kernel import kernel
 from sim.model import Model
 from sim.paths.path import Trace

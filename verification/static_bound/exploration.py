@@ -21,7 +21,6 @@ MOST_STATES = (
     16  # kept apart at one place; more are joined: with 32 the law has the same bound, with 8 it has 90 cycles more
 )
 MOST_PASSES = 4096  # of a loop without a known bound
-MOST_TARGETS = 64  # of a computed jump
 BELOW_SRAM = (0, 0x1FFFFFFF)  # flash, and its alias at 0
 
 

@@ -25,20 +25,18 @@ class Cycles(NamedTuple):
 
 
 NO_CYCLES = Cycles(0, 0)
-_TWO = frozenset({"bx", "blx", "b", "mov_pc", "add_pc"}) | LOADS | STORES | {"ldr_literal"}
+_TWO = frozenset({"bx", "blx", "b", "b_if", "mov_pc", "add_pc"}) | LOADS | STORES | {"ldr_literal"}
 _THREE = frozenset({"bl", "msr", "mrs", "barrier"})
 _MULTIPLE = frozenset({"push", "pop", "ldm", "stm"})
 
 
-def instruction_cycles(instruction: Instruction, taken: bool = True) -> int:
-    """Cycles at zero wait states; `taken` matters to conditional branches only.
+def instruction_cycles(instruction: Instruction) -> int:
+    """Cycles at zero wait states; a conditional branch counts as taken.
 
     Where sources disagree the slower count stands: PUSH with lr 1 + N, POP with pc 3 + N, N counting lr or pc.
     """
     if instruction.op in _MULTIPLE:
         return len(instruction.registers) + (3 if PC in instruction.registers else 1)
-    if instruction.op == "b_if":
-        return 2 if taken else 1
     if instruction.op in _TWO:
         return 2
     return 3 if instruction.op in _THREE else 1

@@ -105,11 +105,6 @@ def tail_lift(a: float, shape: Shape, visited: Visited) -> Array:
     return np.asarray(a * w * np.abs(w) / (1.0 + np.abs(w) / 2000.0))
 
 
-def moved_centre(a: float, shape: Shape, visited: Visited) -> Array:
-    """What gravity's torque gains, in its moment."""
-    return np.asarray(np.cos(visited.psi + a) - np.cos(visited.psi))
-
-
 def reversed_command(e: Sized) -> Equivalents:
     """r u for u < 0."""
     return {"r": Equivalent(1.0 - e.a, abs(e.a))}

@@ -69,7 +69,7 @@ class Deviations:
         return int(self.x.shape[0] * self.x.shape[1])
 
 
-def joined(flights: Sequence[Flight], quiet_s: float = QUIET_s) -> Deviations:
+def joined(flights: Sequence[Flight]) -> Deviations:
     """The flights one after another (1.2.1, Fig. 1.4), cut to the shortest; the trim is the mean over the quiet first seconds.
 
     Raises BadInput for flights of different sample periods or conditions, or shorter than the quiet part.
@@ -82,10 +82,10 @@ def joined(flights: Sequence[Flight], quiet_s: float = QUIET_s) -> Deviations:
         got = f"periods {sorted(periods)} s, conditions {', '.join(names)}"
         raise BadInput("flights to join", flights[0].name, got, "one period and one condition", "join those that agree")
     period_s, rows = periods.pop(), min(len(flight.x) for flight in flights)
-    quiet = round(quiet_s / period_s)
+    quiet = round(QUIET_s / period_s)
     if rows <= quiet:
         shortest = min(flights, key=lambda flight: len(flight.x)).name
-        expected = f"more than {quiet}, {quiet_s:g} s, which are the trim"
+        expected = f"more than {quiet}, {QUIET_s:g} s, which are the trim"
         raise BadInput("flight", shortest, f"{rows} rows", expected, "give a longer record, or leave it out")
     whole = np.stack([np.hstack([flight.u[:rows], flight.x[:rows], flight.y[:rows]]) for flight in flights])
     trim = whole[:, :quiet].mean(axis=1)

@@ -84,14 +84,14 @@ class _Point:
         return _normal(self.model, self.own, self.task)
 
 
-def optimise(model: Model, data: Deviations, margins: Array, lengths_s: tuple[float, ...] = LENGTHS_s) -> Training:
+def optimise(model: Model, data: Deviations, margins: Array) -> Training:
     """Minimise the squared error of free runs, each state in units of its margin (8,).
 
     A start is held near its measured value by `START`, a drift near zero by `DRIFT_s`.
     """
     costs: list[float] = []
     own = Own(data.x[:, 0], np.zeros_like(data.x[:, 0]))
-    for length_s in lengths_s:
+    for length_s in LENGTHS_s:
         rows = min(data.x.shape[1], round(min(length_s, 1e6) / data.sample_period_s))
         task = _task(*windows(data, rows), margins, data.sample_period_s)
         model, own, fallen = _stage(model, task)
