@@ -28,7 +28,7 @@ _PILOT[1, 4], _PILOT[1, 7] = 12.0, 25.0
 _PILOT[2, 3], _PILOT[2, 6] = -6.0, -25.0
 _PILOT[3, 5] = -20.0
 _OWN_AXIS = 0.7  # of that on the control that he moves
-REMNANT_percent, REMNANT_s = 0.3, 1.0  # his own unrest, and how long it lasts
+REMNANT_percent, REMNANT_s = 0.3, 1.0  # what the pilot adds by himself, and how long it lasts
 GUST_m_s, GUST_LENGTH_m = 0.15, 200.0  # light air
 
 # One sd of white noise; accelerations bear the rotor's vibration.
