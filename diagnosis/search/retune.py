@@ -1,7 +1,7 @@
 """A gap that other parameter values explain, beyond their stated spread: then parameters are named, and no effect."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.gauss_newton import Fit, away, fit
+from diagnosis.fit.gauss_newton import Fit, Free, away, fit
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 
 Array = NDArray[np.float64]
-MOST_WIDENINGS = 2  # of a spread beyond the first, each by RETUNE_WIDER: to some 500 of those that are stated
+LEAST_TOLD = 1e-9  # share of a variance: what rounding leaves of none
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,35 +32,51 @@ class Retune:
 
 
 @dataclass(frozen=True)
-class _Wider:
-    """How many times as wide the spread of what is set free is taken: a coefficient's by its place in theta, that of all numbers that the
-    plant file states of an effect by its name."""
+class _Stated:
+    """A number that the plant file states: a coefficient by its place in theta, or one of an effect; how far it is from what is stated in
+    standard deviations, and the share of the variance that the logs take away."""
 
-    factors: Mapping[int | str, float]
+    number: int | Free
+    moved: float
+    told: float
 
-    def once_more(self, numbers: Iterable[int | str]) -> "_Wider":
-        """The same with these RETUNE_WIDER times as wide."""
-        return _Wider({**self.factors, **{n: decisions.RETUNE_WIDER * self.factors.get(n, 1.0) for n in numbers}})
+    @property
+    def of(self) -> int | str:
+        """By what it is set free: all that the file states of an effect together."""
+        return self.number if isinstance(self.number, int) else self.number.effect
 
-    def coefficients(self, count: int) -> Array:
-        """Of each coefficient (count,)."""
-        return np.array([self.factors.get(place, 1.0) for place in range(count)])
+    @property
+    def pull(self) -> float:
+        """How surely the logs pull at it.
+
+        (1)  z = |moved| / sqrt(told)
+
+        is |N(0, 1)| where all is as stated, and z^2 / 2 the nats that a fit gains to first order that knows nothing of the number
+        beforehand: of one that is known well a log takes next to no variance away, and next to nothing moves it.
+        """
+        return abs(self.moved) / float(np.sqrt(self.told))
+
+    @property
+    def alone(self) -> float:
+        """Where the logs alone would have it, in the stated standard deviations."""
+        return self.moved / self.told
 
 
 def retune(case: Case, nominal: Fit) -> Retune | None:
     """The likeliest re-tune beyond the stated spread; None where no number leaves it.
 
-    What the fit within the spread had moved is set free, the furthest first, as what a single number did is there shared out among all
-    that do nearly the same. Each that is set free costs evidence, the more the wider its spread is taken.
+    What the logs pull at most is set free, one number after another, as what a single one did is shared out among all that do nearly the
+    same. Its spread is taken RETUNE_WIDER times as wide, or as wide as the logs alone pull it: a wider one costs evidence.
     """
     found: list[Retune] = []
-    at, wider = nominal, _Wider({})
-    while len(wider.factors) < decisions.RETUNE_MOST:
-        left = {number: far for number, far in _moved(case, at).items() if number not in wider.factors}
-        if not left:
+    at, wider = nominal, dict[int | str, float]()
+    while len(wider) < decisions.RETUNE_MOST:
+        rest = (entry for entry in _stated_numbers(case, at) if entry.of not in wider)
+        furthest = max(rest, key=lambda entry: entry.pull, default=None)
+        if furthest is None or furthest.pull <= decisions.BEYOND_CHANCE:
             break
-        wider = wider.once_more([max(left, key=lambda number: left[number])])
-        ends = [_held(case, start, wider) for start in _starts(nominal.hypothesis, wider)]
+        wider[furthest.of] = max(float(decisions.RETUNE_WIDER), abs(furthest.alone))
+        ends = [_within(case, start, dict(wider)) for start in (at.hypothesis, _alone(at, furthest))]
         best = max((end for end in ends if end is not None), key=lambda end: end.score, default=None)
         if best is None:
             break
@@ -69,50 +85,51 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
     return max(found, key=lambda entry: entry.score, default=None)
 
 
-def _moved(case: Case, at: Fit) -> Mapping[int | str, float]:
-    """How far each number went that left its spread, and of each effect the furthest."""
-    theta = at.hypothesis.theta
-    far: dict[int | str, float] = {
-        place: abs(float(theta[place])) for place in moved_parameters(case, theta, decisions.BEYOND_CHANCE)
-    }
-    for entry in moved_effects(at, decisions.BEYOND_CHANCE):
-        distance = abs(entry.of(at.hypothesis) - (entry.stated or 0.0)) / entry.scale
-        far[entry.effect] = max(distance, far.get(entry.effect, 0.0))
-    return far
+def _stated_numbers(case: Case, at: Fit) -> Iterator[_Stated]:
+    """All that the plant file states to a spread."""
+    count = len(case.free)
+    told = np.maximum(1.0 - np.diag(np.linalg.pinv(at.information)), LEAST_TOLD).tolist()
+    yield from map(_Stated, range(count), at.hypothesis.theta.tolist(), told)
+    for entry, share in zip(at.free, told[count:], strict=True):
+        if entry.stated is not None:
+            yield _Stated(entry, (entry.of(at.hypothesis) - entry.stated) / entry.scale, share)
 
 
-def _starts(nominal: Hypothesis, wider: _Wider) -> tuple[Hypothesis, Hypothesis]:
-    """Where the spread held all, and the same with what is not set free as it is stated."""
-    alone = np.where([place in wider.factors for place in range(len(nominal.theta))], nominal.theta, 0.0)
-    return nominal, replace(nominal, theta=alone)
+def _alone(at: Fit, freed: _Stated) -> Hypothesis:
+    """All as it is stated but for the number that is set free, which is where the logs alone would have it."""
+    hypothesis, theta = at.hypothesis, np.zeros_like(at.hypothesis.theta)
+    for entry in at.free:
+        if entry.stated is not None:
+            hypothesis = hypothesis.with_value(entry.effect, entry.parameter.symbol, entry.stated, entry.log)
+    if isinstance(freed.number, int):
+        theta[freed.number] = freed.alone
+        return replace(hypothesis, theta=theta)
+    number = freed.number
+    value = (number.stated or 0.0) + freed.alone * number.scale
+    value = float(np.clip(value, number.parameter.lower, number.parameter.upper))
+    return replace(hypothesis, theta=theta).with_value(number.effect, number.parameter.symbol, value, number.log)
 
 
-def _held(case: Case, start: Hypothesis, wider: _Wider) -> Retune | None:
-    """The fit within spreads that are wide enough to hold what is set free; None where there is none, or nothing left what is stated."""
-    found = _fitted(case, start, wider)
-    for _ in range(MOST_WIDENINGS):
-        beyond = [] if found is None else [n for n in _moved(_with_spreads(case, wider), found) if n in wider.factors]
-        if found is None or not beyond:
-            break
-        start, wider = _as_stated(found, wider).hypothesis, wider.once_more(beyond)
-        found = _fitted(case, start, wider)
-    return (
-        None if found is None else _told(case, _as_stated(found, wider), evidence(found, case.library.effects), wider)
-    )
-
-
-def _fitted(case: Case, start: Hypothesis, wider: _Wider) -> Fit | None:
-    """The fit within wider spreads, in which it counts, from a start that counts in the stated ones."""
+def _within(case: Case, start: Hypothesis, wider: Mapping[int | str, float]) -> Retune | None:
+    """The fit within wider spreads, from a start that counts in the stated ones; None where there is none, or nothing left these."""
     wide = _with_spreads(case, wider)
-    found = fit(wide, replace(start, theta=start.theta / wider.coefficients(len(case.free))), rounds=6)
-    return None if found is None else fit(wide, with_process_noise(wide, found.hypothesis), rounds=6)
+    found = fit(wide, replace(start, theta=start.theta / _factors(case, wider)), rounds=6)
+    found = None if found is None else fit(wide, with_process_noise(wide, found.hypothesis), rounds=6)
+    if found is None:
+        return None
+    return _told(case, _as_stated(case, found, wider), evidence(found, case.library.effects), wider)
 
 
-def _told(case: Case, stated: Fit, explained: float, wider: _Wider) -> Retune | None:
+def _factors(case: Case, wider: Mapping[int | str, float]) -> Array:
+    """How many times as wide each coefficient's spread is taken (free,)."""
+    return np.array([wider.get(place, 1.0) for place in range(len(case.free))])
+
+
+def _told(case: Case, stated: Fit, explained: float, wider: Collection[int | str]) -> Retune | None:
     """What left the stated spreads in a fit that counts in these; None where nothing did."""
     theta = stated.hypothesis.theta
-    far = [place for place in moved_parameters(case, theta, decisions.BEYOND_CHANCE) if place in wider.factors]
-    numbers = [entry for entry in moved_effects(stated, decisions.BEYOND_CHANCE) if entry.effect in wider.factors]
+    far = [place for place in moved_parameters(case, theta, decisions.BEYOND_CHANCE) if place in wider]
+    numbers = [entry for entry in moved_effects(stated, decisions.BEYOND_CHANCE) if entry.effect in wider]
     if not far and not numbers:
         return None
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
@@ -134,27 +151,27 @@ def _shares(where: Sequence[Sequence[str]], distances: Array) -> dict[str, float
     return dict(found)
 
 
-def _as_stated(found: Fit, wider: _Wider) -> Fit:
-    """The fit of a wider case counted in the stated standard deviations."""
-    theta = found.hypothesis.theta
-    numbers = np.array([wider.factors.get(entry.effect, 1.0) for entry in found.free])
-    units = np.append(wider.coefficients(len(theta)), numbers)
+def _as_stated(case: Case, found: Fit, wider: Mapping[int | str, float]) -> Fit:
+    """The fit within wider spreads, counted in the stated ones."""
+    factors = _factors(case, wider)
+    numbers = np.array([wider.get(entry.effect, 1.0) for entry in found.free])
+    units = np.append(factors, numbers)
     free = [replace(entry, scale=entry.scale / unit) for entry, unit in zip(found.free, numbers, strict=True)]
     return replace(
         found,
-        hypothesis=replace(found.hypothesis, theta=wider.coefficients(len(theta)) * theta),
+        hypothesis=replace(found.hypothesis, theta=factors * found.hypothesis.theta),
         free=tuple(free),
         information=found.information / np.outer(units, units),
         pull=found.pull / units,
     )
 
 
-def _with_spreads(case: Case, wider: _Wider) -> Case:
+def _with_spreads(case: Case, wider: Mapping[int | str, float]) -> Case:
     """The case with wider spreads."""
     sd = case.library.bound.sd.copy()
-    sd[case.free] *= wider.coefficients(len(case.free))
+    sd[case.free] *= _factors(case, wider)
     stated_sd = {
-        name: {symbol: wider.factors.get(name, 1.0) * value for symbol, value in of.items()}
+        name: {symbol: wider.get(name, 1.0) * value for symbol, value in of.items()}
         for name, of in case.stated_sd.items()
     }
     return replace(case, library=replace(case.library, bound=replace(case.library.bound, sd=sd)), stated_sd=stated_sd)

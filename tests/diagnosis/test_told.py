@@ -14,6 +14,7 @@ from diagnosis.detect.detection import detect
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.diagnose import _gap
 from diagnosis.experiment.revealing import revealing_experiment
+from diagnosis.explain.improved import improved_plant
 from diagnosis.explain.notes import notes_of
 from diagnosis.explain.sentences import plain_sentence, sentence, sentences, unseen_effects
 from diagnosis.fit.evidence import FittedHypothesis, evidence
@@ -97,6 +98,21 @@ def test_a_parameter_far_beyond_its_spread_is_found_alone_with_its_place() -> No
     assert max(found.places, key=lambda place: found.places[place]) == places_of(case, "K")[0]
     assert sum(found.places.values()) == pytest.approx(1.0)
     assert retune(plain_linearisation().case, plain_linearisation().fit) is None
+
+
+def test_another_value_of_a_number_that_is_known_far_better_than_a_log_tells_is_found() -> None:
+    # Truth: half as much viscous friction again, of a plant that is known to a hundred-thousandth: 50000 deviations, of which a log takes
+    # next to no variance away, so that within its spread the friction does not move.
+    wrong = replace(arm(), sd=1e-5 * np.where(arm().sd > 0.0, np.abs(arm().p), 0.0))
+    names = [str(symbol) for symbol in arm().model.parameter_symbols]
+    case = make_case(effect_library(wrong), [arm_log(c=1.5 * wrong.p[names.index("c")])], [None], wrong)
+    nominal = nominal_fit(case)
+    assert np.max(np.abs(nominal.hypothesis.theta)) < 3.0
+    found = retune(case, nominal)
+    assert found is not None
+    assert found.parameters == ("c",)
+    p = improved_plant(case, found.fitted).parameters["c"]
+    assert p.value == pytest.approx(1.5 * wrong.p[names.index("c")], rel=0.03)
 
 
 @pytest.mark.soak  # in every suite test_cannot_tell.py asks the same of a hover, with filters that others use too
