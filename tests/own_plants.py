@@ -52,7 +52,7 @@ class OwnPlant:
 
 
 def _suffix(output: str) -> str:
-    return next((f"_{unit}" for unit in ("rad_s", "rad", "A", "V", "K", "m") if output.endswith(f"_{unit}")), "")
+    return next((f"_{unit}" for unit in ("rad_s", "m_s", "rad", "A", "V", "K", "m") if output.endswith(f"_{unit}")), "")
 
 
 ARM = {
@@ -379,6 +379,32 @@ return Model(
             "x_sensor": SensorPlace("x_m", "m"), "theta_sensor": SensorPlace("theta_rad", "rad"),
             "camera": SensorPlace("tip_m", "m"),
         },
+    ),
+)
+""",
+)
+
+# A boat: its rudder turns it by the square of its speed, which the propeller makes.
+BOAT = OwnPlant(
+    {
+        "m": (40.0, 2.0, "kg"),
+        "d": (12.0, 1.0, "kg m^-1"),
+        "I": (8.0, 0.5, "kg m^2"),
+        "c": (10.0, 1.0, "N m s"),
+        "N": (6.0, 0.5, "kg"),
+    },
+    {"v_m_s": 0.005, "psi_rad": 1.75e-3},
+    """
+v, psi, r, thrust, rudder = (symbol(name) for name in ("v_m_s", "psi_rad", "r_rad_s", "thrust_N", "rudder_rad"))
+torque = p["N"] * v**2 * rudder - p["c"] * r
+return Model(
+    name="NAME", states=(v, psi, r), inputs=(thrust, rudder), outputs={"v_m_s": v, "psi_rad": psi}, parameters=PARAMETERS,
+    rates={v: (thrust - p["d"] * v * sympy.Abs(v)) / p["m"], psi: r},
+    axes=(Axis("yaw", psi, r, p["I"], torque, 0, None, None),), input_limits={thrust: (0, 120), rudder: (-0.6, 0.6)},
+    places=Places(
+        inputs={"propeller": InputPlace(thrust, "N", 120.0), "rudder": InputPlace(rudder, "rad", 0.6)},
+        axes={"yaw": AxisPlace("psi_rad", "N m", 2.0, speed_size=0.3)},
+        sensors={"speed_log": SensorPlace("v_m_s", "m s^-1", 2.0), "compass": SensorPlace("psi_rad", "rad")},
     ),
 )
 """,

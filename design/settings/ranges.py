@@ -4,7 +4,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from design.structure import measured_axis, stops
+import sympy
+
+from design.structure import stops
 from records.errors import BadInput
 from records.loops import LOOPS, Loop
 from records.table import Schedule, range_keys
@@ -32,16 +34,25 @@ def scheduling_loop(section: Mapping[str, Any], loops: tuple[Loop, ...], where: 
 
 def read_schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, where: str) -> Schedule:
     """The angle of `loop` as what the coefficients go by, over the range stated or most of that between its stops."""
-    has_positions = any(axis.position is not None for axis in bound.nominal.axes)
-    if has_positions and measured_axis(bound.nominal, loop) is None:
-        expected = "an output that is the position of an axis, as this plant has positions: it is put to rest at these"
-        raise BadInput("schedule", f"{where}.schedule", loop.output, expected, "leave it out for no schedule")
+    _demand_rests(bound, loop, f"{where}.schedule")
     low_key, high_key = range_keys(loop)
     stops_rad = stops(bound, loop)
     default = within(stops_rad, SHARE)
     low, high = (range_end(section, key, default, end, where) for end, key in enumerate((low_key, high_key)))
     check_range(f"{where}: {low_key}, {high_key}", low, high, stops_rad, "operating range", loop)
     return Schedule(loop.axis, low, high)
+
+
+def _demand_rests(bound: BoundPlant, loop: Loop, where: str) -> None:
+    """Raise BadInput where the output moves a position: at no value of it but one does the plant rest."""
+    model = bound.nominal
+    moving = [axis for axis in model.axes if axis.position is not None]
+    measured = sympy.sympify(model.outputs[loop.output]).free_symbols
+    axis = next((axis for axis in moving if axis.velocity in measured), None)
+    if axis is not None:
+        got = f"{loop.output}, by which {axis.position} moves"
+        expected = "an output that stays while the plant rests, such as the position of an axis"
+        raise BadInput("schedule", where, got, expected, "leave it out for no schedule")
 
 
 def range_end(section: Mapping[str, Any], key: str, default: tuple[float, float] | None, end: int, where: str) -> float:

@@ -4,12 +4,16 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from design.operating_points import design_points
+from design.settings import read_settings
 from tests.docs.json_page import is_as_documented
-from tests.own_plants import HEATER, NO_AXIS, RATE_ONLY, TANKS, OwnPlant
+from tests.own_plants import BOAT, HEATER, NO_AXIS, RATE_ONLY, TANKS, OwnPlant
 from tests.soak import sampled
 from twinlaw.command import main
+from twinlaw.workflows.reading import load_bound
 
 PLANTS = Path(__file__).parents[3] / "plants"
 
@@ -115,6 +119,27 @@ omega_max_rad_s = 3.0
 [design.arm]
 poles_rad_s = [-3.0, -4.0, -5.0, -6.0]
 """
+BY_SPEED = """
+[design]
+schedule = "v_m_s"
+v_min_m_s = 0.8
+v_max_m_s = 2.0
+operating_points = 5
+
+[design.speed]
+output = "v_m_s"
+input = "thrust_N"
+poles_rad_s = [-0.6, -0.8]
+prefilter_time_constant_s = 1.5
+
+[design.heading]
+output = "psi_rad"
+input = "rudder_rad"
+poles_rad_s = [-0.8, -1.0, -1.2, -1.5]
+prefilter_time_constant_s = 2.0
+reference_min_rad = -1.0
+reference_max_rad = 1.0
+"""
 BY_PLACE = EMPS.replace(
     "[design]\n",
     '[design]\nschedule = "q_m"\nq_min_m = -0.1\nq_max_m = 0.1\noperating_points = 9\ncoefficient_degree = 2\n',
@@ -124,7 +149,7 @@ BY_PLACE = EMPS.replace(
 def written(name: str, folder: Path) -> Path:
     """The plant's file with its wishes."""
     own = {"coil": (NO_AXIS, COIL), "tank": (TANK_PLANT, TANK), "heater": (HEATER, HEATED), "tanks": (TANKS, LEVELS)}
-    own["by_level"] = (TANKS, BY_LEVEL)
+    own |= {"by_level": (TANKS, BY_LEVEL), "boat": (BOAT, BY_SPEED)}
     if name in own:
         plant, wishes = own[name]
         path = plant.write(folder, name)
@@ -143,7 +168,7 @@ def written(name: str, folder: Path) -> Path:
 @pytest.mark.parametrize(
     "name",
     sampled(
-        ["emps", "by_place", "coil", "torque", "tank", "heater", "tanks", "by_level"],
+        ["emps", "by_place", "coil", "torque", "tank", "heater", "tanks", "by_level", "boat"],
         keep=["coil"],
     ),
 )
@@ -164,6 +189,7 @@ def test_it_flies_the_whole_way(name: str, tmp_path: Path, capsys: pytest.Captur
         "by_place": ("LAW_Q_MAX_M", "reference_max_m"),
         "heater": ("LAW_HEAT_MAX_W", "u_max_W"),
         "by_level": ("LAW_H2_MAX_M", "reference_max_m"),
+        "boat": ("LAW_V_MAX_M_S", "reference_max_m_s"),
         "tanks": ("LAW_H2_REF_MAX_M", "reference_max_m"),
         "coil": ("LAW_I_REF_MAX_A", "reference_max_A"),
         "torque": ("LAW_TAU_MAX_NM", "u_max_Nm"),
@@ -198,11 +224,21 @@ def test_a_law_is_scheduled_by_a_length(tmp_path: Path, capsys: pytest.CaptureFi
     assert "at q " in capsys.readouterr().out.splitlines()[0]
 
 
-def test_a_plant_with_positions_is_scheduled_by_these_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_speed_that_moves_a_position_schedules_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plant = RATE_ONLY.write(tmp_path, "arm")
     plant.write_text(plant.read_text() + BY_RATE)
     assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 2
-    assert "the position of an axis" in capsys.readouterr().err
+    assert "got omega_rad_s, by which theta_rad moves" in capsys.readouterr().err
+
+
+def test_a_boat_s_heading_is_scheduled_by_its_speed(tmp_path: Path) -> None:
+    """Truth: the rudder turns it by v^2, what damps it is constant: q goes by v^-2, to rounding. It rests at each speed, heading 0."""
+    bound = load_bound(written("boat", tmp_path))
+    points = design_points(bound, read_settings(bound))
+    assert [point.x0[0] for point in points.equilibria] == pytest.approx(np.linspace(0.8, 2.0, 5))
+    assert all(point.x0[1] == 0.0 for point in points.equilibria)
+    slow, *_, fast = points.axes[1]
+    assert slow.delta.q == pytest.approx(fast.delta.q * (2.0 / 0.8) ** 2, rel=1e-6)
 
 
 def test_a_key_in_another_unit_is_refused_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
