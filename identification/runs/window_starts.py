@@ -130,15 +130,19 @@ def lines(
 def crawling(t_s: Array, y: Array, begins: Index, step: float) -> tuple[Array, Array]:
     """Guess and bound of the velocity at the rows `begins` of what shows no motion there: it may crawl within one resolution step.
 
-    It has not left the step since the reading last changed and until it changes next, or the log ends. Where both changes go the same
-    way it has crossed the step in between; otherwise it may as well rest.
+    It has not left the step since the reading last changed and does not until it changes next; what the log does not show it may have
+    stood for as long as the log lasts. Where both changes go the same way it has crossed the step in between; otherwise it may as well
+    rest. It is no faster than leads across the step in the time since the one or until the other: what stood for a minute may set out.
     """
     known = np.flatnonzero(np.isfinite(y))
     jumps = np.diff(y[known])
     changed = np.abs(jumps) >= 0.5 * step
     edges_s = (0.5 * (t_s[known[1:]] + t_s[known[:-1]]))[changed]
     ways = np.concatenate([[0.0], np.sign(jumps[changed]), [0.0]])
-    ends_s = np.concatenate([[t_s[0]], edges_s, [t_s[-1]]])
+    lasts_s = t_s[-1] - t_s[0]
+    ends_s = np.concatenate([[t_s[0] - lasts_s], edges_s, [t_s[-1] + lasts_s]])
     after = 1 + np.searchsorted(edges_s, t_s[begins], side="right")
-    most = step / np.maximum(ends_s[after] - ends_s[after - 1], np.median(np.diff(t_s)))
-    return np.where(ways[after] == ways[after - 1], ways[after], 0.0) * most, most
+    least_s = np.median(np.diff(t_s))
+    crossed = step / np.maximum(ends_s[after] - ends_s[after - 1], least_s)
+    nearer_s = np.minimum(ends_s[after] - t_s[begins], t_s[begins] - ends_s[after - 1])
+    return np.where(ways[after] == ways[after - 1], ways[after], 0.0) * crossed, step / np.maximum(nearer_s, least_s)
