@@ -104,6 +104,9 @@ def load_plant(path: Path) -> Plant:
 def parse_plant(content: Mapping[str, Any], name: str, where: str, folder: Path = Path()) -> Plant:
     """A plant from the content of its file in `folder`; raises BadInput naming `where`, the file, and the key."""
     checks.schema(content, where, SCHEMA)
+    if not {"equations", "model"} & content.keys():
+        expected = "the file of the plant's equations, beside this one, or a model of the project's own"
+        raise BadInput("equations", where, "nothing", expected, 'add equations = "my_arm.py", or model = "ce150"')
     source = "equations" if "equations" in content else "model"
     checks.keys(
         content, where, ("schema", source, "parameters", "sensors"), ("design", "board", "effects", "correlation")

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -65,6 +66,9 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 # A flight of a plant that is no helicopter: each loop in turn goes to these shares of its references' range about the middle, and is
 # left alone for so many of its slowest time constants, its reference filter's counted as two.
 STEP_SHARES = (0.0, 0.5, -0.3, 0.0)
+LEAST_HOP = (
+    min(abs(after - before) for before, after in pairwise(STEP_SHARES)) / 2.0
+)  # of a range, in one of these steps
 TIME_CONSTANTS = 8.0
 SHORTEST_HOLD_S, LONGEST_HOLD_S = 4.0, 15.0
 LONGEST_HOLD_SAMPLES = (

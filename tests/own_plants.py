@@ -434,6 +434,11 @@ REFUSED: Mapping[str, tuple[OwnPlant, str]] = {
     "no_places": (NO_PLACES, "no place"),
     "no_axis_place": (NO_AXIS_PLACE, "no place"),
     "no_moment": (NO_MOMENT, "gravity without gravity_moment"),
+    "other_unit": (_with('InputPlace(u, "V"', 'InputPlace(u, "N m"'), "got the unit 'N m', expected that of u_V"),
+    "no_unit": (
+        _with('SensorPlace("theta_rad", "rad")', 'SensorPlace("theta_rad", "degree")'),
+        "'degree' is not one of",
+    ),
     "speed_as_angle": (SPEED_AS_ANGLE, "which is its speed"),
     "negative_inertia": (
         _with('p["J"], torque', '-p["J"], torque'),

@@ -1,5 +1,6 @@
 """The wishes for one axis: as stated, else as the plant's model has them, else plain."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,7 +16,9 @@ from records.loops import Loop
 from records.plant import PLANTS, Plant, load_plant
 from records.table import Schedule
 from records.text import checks
+from records.text.units import unit_of
 from sim.bind import BoundPlant
+from sim.manoeuvres import LEAST_HOP
 
 # Wishes for an axis that neither its plant file nor that of its model states anything of; the poles are named by one of them.
 PLAIN_AXIS: Mapping[str, Any] = {
@@ -86,7 +89,18 @@ def _reference_rad(
     low, high = (range_end(section, key, default, end, where) for end, key in enumerate(ends))
     check_range(f"{where}: {', '.join(ends)}", low, high, stops_rad, "reference range", loop)
     demand_in_reach(loop, low, high, "reference range", f"{where}: {', '.join(ends)}")
+    _demand_shown(bound, loop, low, high, f"{where}: {', '.join(ends)}")
     return low, high
+
+
+def _demand_shown(bound: BoundPlant, loop: Loop, low_rad: float, high_rad: float, where: str) -> None:
+    """Raise BadInput where a sensor shows nothing of a flight: its references end on whole steps, and all of them on the same."""
+    step_rad = bound.plant.sensors[loop.output]
+    least = math.ceil(1.0 / LEAST_HOP)
+    if high_rad - low_rad < least * step_rad:
+        got = f"{low_rad:g} .. {high_rad:g} {unit_of(loop.output)}, {(high_rad - low_rad) / step_rad:.2g} steps of its sensor"
+        remedy = f"widen the range, or correct {loop.own('resolution_rad')}"
+        raise BadInput("reference range", where, got, f"{least} steps at least", remedy)
 
 
 def _time_constant(value: Any, where: str) -> float:

@@ -63,6 +63,12 @@ def unit_suffix(name: str) -> str:
     return next((unit for unit in _SUFFIXES if name.endswith(f"_{unit}")), "")
 
 
+def coherent(suffix: str) -> str:
+    """A name's ending as a unit whose `dimension` can be told: "rad s^-2" of rad_s2, "N m" of Nm, "m^3" of m3."""
+    whole, _, over = suffix.partition("_")
+    return f"{whole.replace('Nm', 'N m').replace('m3', 'm^3')}{over and f' {over[0]}^-{over[1:] or 1}'}"
+
+
 def unit_of(name: str) -> str:
     """The unit that a column's name ends in, as a person writes it; empty where it states none."""
     return unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s").replace("Nm", "N m")

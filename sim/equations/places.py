@@ -5,6 +5,7 @@ from dataclasses import fields
 
 import sympy
 
+from records.text.units import coherent, dimension, unit_suffix
 from sim.equations.own_file import shown
 from sim.equations.slip import Slip, listed
 from sim.model import Model
@@ -47,6 +48,7 @@ def place_slips(model: Model) -> Iterator[Slip]:
                 (name, "places"), f"place {name!r}", f"the output {sensor.output!r}", f"one of {listed(outputs)}"
             )
     yield from _place_names(model)
+    yield from _units(model)
     yield from _sizes(model)
     yield from _gravity(model)
     yield from _rotors(model)
@@ -73,6 +75,21 @@ def _place_names(model: Model) -> Iterator[Slip]:
                 "letters a to z, digits and _, once among all places",
                 "rename it",
             )
+
+
+def _units(model: Model) -> Iterator[Slip]:
+    """What a place is measured in is what its column's name ends in: effects there bear the one, logs the other."""
+    inputs = {name: (str(entry.variable), entry.unit) for name, entry in model.places.inputs.items()}
+    sensors = {name: (entry.output, entry.unit) for name, entry in model.places.sensors.items()}
+    for name, (column, unit) in {**inputs, **sensors}.items():
+        words, what = (name, "places"), f"place {name!r}"
+        try:
+            stated = dimension(unit)
+        except (ValueError, AttributeError, TypeError) as error:
+            yield Slip(words, what, f"the unit {shown(unit)}", "coherent SI units", str(error))
+            continue
+        if unit_suffix(column) and stated != dimension(coherent(unit_suffix(column))):
+            yield Slip(words, what, f"the unit {unit!r}", f"that of {column}", "correct either")
 
 
 def _sizes(model: Model) -> Iterator[Slip]:

@@ -12,6 +12,7 @@ from records.errors import BadInput
 from records.plant import load_plant
 from sim.bind import bind
 from tests.design.helicopter import helicopter
+from tests.own_plants import PLAIN
 
 PAIR = [[-2.5, 1.5], [-2.5, -1.5]]
 
@@ -117,3 +118,17 @@ def test_a_plant_that_names_no_loop_is_told_how_to_name_one():
         match=r"plant 'emps': design: loops: got 0 sections.*\[design\.arm\] with output, input and poles_rad_s",
     ):
         read_settings(bound)
+
+
+def test_references_between_two_steps_of_their_sensor_are_refused(tmp_path):
+    """Truth: 1.2 rad of references; a flight's shortest hop is 0.15 of that, one step of 0.18 rad but none of 0.19 rad."""
+    path = PLAIN.write(tmp_path, "arm")
+    wishes = "[design.arm]\npoles_rad_s = [-3.0, -4.0, -5.0, -6.0]\nreference_min_rad = -0.6\nreference_max_rad = 0.6\n"
+
+    def settings(step_rad):
+        path.write_text(PLAIN.toml("arm").replace("= 0.0015", f"= {step_rad}") + wishes)
+        return read_settings(bind(load_plant(path)))
+
+    assert settings(0.17).axis("arm").reference_max_rad == 0.6
+    with pytest.raises(BadInput, match=r"reference_min_rad.* 6.3 steps of its sensor, expected 7 steps at least"):
+        settings(0.19)

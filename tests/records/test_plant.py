@@ -56,7 +56,7 @@ def change(content, path, value):
     [
         ("schema", "plant/2", "schema: got 'plant/2', expected 'plant/1'"),
         ("schema", None, "schema: got nothing"),
-        ("model", None, "key 'model': got nothing"),
+        ("model", None, "got nothing, expected the file of the plant's equations, beside this one, or a model"),
         ("model", "ufo", "model: got 'ufo', expected one of ce150"),
         ("model", 7, "model: text: got 7"),
         ("wind", 3, "key 'wind': got an unknown key"),

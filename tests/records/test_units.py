@@ -2,7 +2,7 @@
 
 import pytest
 
-from records.text.units import digits
+from records.text.units import coherent, digits, dimension
 
 
 @pytest.mark.parametrize(
@@ -12,3 +12,11 @@ from records.text.units import digits
 def test_a_table_s_number_has_two_decimals_and_three_digits_at_least(value: float, shown: str) -> None:
     """Truth: -0.045 and -0.0454 rad/s, of a heater, are not -0.04 and -0.05."""
     assert digits(value) == shown
+
+
+@pytest.mark.parametrize(
+    ("suffix", "unit"),
+    [("rad", "rad"), ("rad_s2", "rad s^-2"), ("K_s", "K/s"), ("Nm", "N m"), ("m3_s", "m^3/s"), ("kg_s", "kg s^-1")],
+)
+def test_a_column_s_ending_is_a_unit(suffix: str, unit: str) -> None:
+    assert dimension(coherent(suffix)) == dimension(unit)
