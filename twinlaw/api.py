@@ -22,8 +22,9 @@ from identification.results.result import Identification
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import RunLog, save_log
-from records.table import ControllerTable
+from records.table import ControllerTable, table_text
 from records.verification import Verification
+from replay.table import TABLE_NAME
 from rig.programming.image import build_firmware
 from sim.bind import BoundPlant
 from twinlaw.cli.options import plant_file
@@ -107,10 +108,16 @@ def identify(
         return identified(plant, usable_inputs(fitted, kept, plant), wishes, Path(folder))
 
 
-def diagnose(plant: BoundPlant, logs: Logs, holdout: Logs = ()) -> Result:
-    """What the plant's model lacks to explain the logs: `diagnosis` is what the verb writes, `plant` the improved one."""
+def diagnose(plant: BoundPlant, logs: Logs, holdout: Logs = (), table: ControllerTable | None = None) -> Result:
+    """What the plant's model lacks to explain the logs: `diagnosis` is what the verb writes, `plant` the improved one.
+
+    `table` is of the law that flew logs that are records, whose firmware is run again; beside a file lies its controller.json.
+    """
     _demand_any(logs)
-    with _files(logs) as explained, _files(holdout) as kept:
+    if table is not None and not (isinstance(logs, Mapping) and isinstance(holdout or {}, Mapping)):
+        expected = f"the law of a file's flight beside it, as {TABLE_NAME}"
+        raise BadInput("table", "diagnose", "one for files", expected, "leave it out, or give logs as records")
+    with _files(logs, table) as explained, _files(holdout, table) as kept:
         return diagnosed(plant, material_of(plant, explained, kept))
 
 
@@ -122,8 +129,8 @@ def _demand_any(logs: Logs) -> None:
 
 
 @contextmanager
-def _files(logs: Logs) -> Iterator[list[Path]]:
-    """The logs' files; those of records, by name, are there for the body."""
+def _files(logs: Logs, table: ControllerTable | None = None) -> Iterator[list[Path]]:
+    """The logs' files; those of records, by name, are there for the body, and the table beside them."""
     if not isinstance(logs, Mapping):
         yield [Path(path) for path in logs]
         return
@@ -131,4 +138,6 @@ def _files(logs: Logs) -> Iterator[list[Path]]:
         paths = {name: Path(folder) / f"{name}.csv" for name in logs}
         for name, log in logs.items():
             save_log(paths[name], log)
+        if table is not None:
+            (Path(folder) / TABLE_NAME).write_text(table_text(table), encoding="utf-8")
         yield list(paths.values())

@@ -10,6 +10,7 @@ import pytest
 import twinlaw
 from records.errors import BadInput
 from tests.docs.test_new_plant import run
+from tests.plants import stated_table
 from tests.test_project import ROOT
 from twinlaw.command import main
 
@@ -46,6 +47,10 @@ NOTHING: dict[str, Any] = {
         lambda arm: twinlaw.diagnose(arm, "run.csv"),
         r"got one path, expected a list of them.*\[\"run.csv\"\]",
     ),
+    "a table for files": (
+        lambda arm: twinlaw.diagnose(arm, ["run.csv"], table=stated_table("aeroshield")),
+        r"table: got one for files, expected the law of a file's flight beside it, as controller.json",
+    ),
     "no such parameter": (lambda arm: twinlaw.identify(arm, ["run.csv"], free=["mass"]), "'mass'.*an unknown name"),
     "no step": (lambda arm: twinlaw.verify(arm, None, steps=0), "steps: got 0, expected a whole number from 1 on"),
 }
@@ -56,6 +61,17 @@ def test_what_a_function_cannot_use_is_told_as_its_verb_tells_it(call: Any, told
     arm = twinlaw.load(ROOT / "plants" / "aeroshield.toml")
     with pytest.raises(BadInput, match=told):
         call(arm)
+
+
+@pytest.mark.soak
+def test_the_firmware_that_flew_a_record_is_run_again_where_its_table_is_given() -> None:
+    """Truth: the C flew it on this computer, so not one bit differs; without the table nothing is run."""
+    arm, table = twinlaw.load(ROOT / "plants" / "aeroshield.toml"), stated_table("aeroshield")
+    flown = {"flight": twinlaw.fly(arm, table, on="host")}
+    for given, bit_exact in ((table, True), (None, False)):
+        firmware = twinlaw.diagnose(arm, flown, table=given).diagnosis.firmware
+        assert firmware is not None
+        assert (firmware.replayed, firmware.bit_exact) == (bit_exact, bit_exact)
 
 
 @pytest.mark.soak
