@@ -72,8 +72,9 @@ def _at_positions(bound: BoundPlant, positions_rad: Sequence[float], driven: Seq
 def rest_with(
     bound: BoundPlant, places: Sequence[int], values: Sequence[float], driven: Sequence[int] | None = None
 ) -> OperatingPoint:
-    """The rest point with the outputs at `places` at these values: of axes with a position by that, all others at 0, or where that is
-    no rest point (a pulley behind a belt) wherever they come to rest; and of a plant without one, a tank or a coil, by what it measures.
+    """The rest point with the outputs at `places` at these values: of axes with a position by that, all others at 0, or where they do not
+    rest there (a pulley behind a belt, a ball that cannot reach its magnet) wherever they come to rest; and of a plant without one, a
+    tank or a coil, by what it measures.
 
     Where the `driven` inputs can hold it alone, all others are at their least effort, else all hold it together. Raises BadInput where
     there is none, or it needs an input beyond its limits.
@@ -95,7 +96,7 @@ def _rest_with(
         return _measured(bound, wanted, driven)
     try:
         point = _at_positions(bound, [at.get(axis.position, 0.0) for axis in arms], driven)
-    except NoRestPoint:
+    except BadInput:
         if all(axis.position in at for axis in arms):
             raise
         with suppress(BadInput):

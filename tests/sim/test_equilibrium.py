@@ -8,7 +8,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.equilibrium import equilibrium, rest_with
 from sim.kernel.reference import reference
-from tests.own_plants import FOUR_TANKS, HANGING, HEATER, TANKS, OwnPlant
+from tests.own_plants import FOUR_TANKS, FROM_THE_MAGNET, HANGING, HEATER, TANKS, OwnPlant
 
 U_M0_V = {
     -45: 4.653,
@@ -140,3 +140,13 @@ def test_inputs_that_are_not_driven_stay_at_their_least_effort_where_the_others_
     np.testing.assert_allclose(rest_with(bound, [0], [10.0], [0]).u0, [6.0, 0.0], atol=1e-9)
     with pytest.raises(BadInput, match=r"input small_W: got 12 W needed to rest there, expected 0 to 10 W"):
         rest_with(bound, [0], [20.0], [1])
+
+
+def test_a_ball_that_cannot_reach_its_magnet_rests_where_a_sensor_with_an_effect_is_wanted_to_show_it(tmp_path):
+    """Truth: 8 mm on a sensor that shows 1.03 times the gap; the weight asks for C i^2 = m g z^2. The stops are at 2 and 20 mm."""
+    body = FROM_THE_MAGNET.body.replace("0, None, None", "0, 0.002, 0.02")
+    path = OwnPlant(FROM_THE_MAGNET.parameters, FROM_THE_MAGNET.sensors, body).write(tmp_path, "ball")
+    stretched = '\n[effects.light.scale.scale]\nvalue = 1.03\nsd = 0.0\nunit = "1"\nsource = "a test"\n'
+    path.write_text(path.read_text() + stretched)
+    found = rest_with(bind(load_plant(path)), [0], [0.008])
+    assert found.x0 == pytest.approx([0.008 / 1.03, 0.0, np.sqrt(0.068 * 9.81 / 6.5e-5) * 0.008 / 1.03], abs=1e-9)
