@@ -130,19 +130,22 @@ def lines(
 def crawling(t_s: Array, y: Array, begins: Index, step: float) -> tuple[Array, Array]:
     """Guess and bound of the velocity at the rows `begins` of what shows no motion there: it may crawl within one resolution step.
 
-    It has not left the step since the reading last changed and does not until it changes next; what the log does not show it may have
-    stood for as long as the log lasts. Where both changes go the same way it has crossed the step in between; otherwise it may as well
-    rest. It is no faster than leads across the step in the time since the one or until the other: what stood for a minute may set out.
+    It has not left the step since the reading last changed and until it changes next, or the log ends. Where both changes go the same
+    way it has crossed the step in between; otherwise it may as well rest. What stood for a minute may also be setting out: s from rest
+    under constant acceleration until it has crossed the step a time T after the row, its speed there is step s / (s + T)^2, at most
+    step / (4 T); and coming to rest likewise, T after a change.
     """
     known = np.flatnonzero(np.isfinite(y))
     jumps = np.diff(y[known])
     changed = np.abs(jumps) >= 0.5 * step
     edges_s = (0.5 * (t_s[known[1:]] + t_s[known[:-1]]))[changed]
     ways = np.concatenate([[0.0], np.sign(jumps[changed]), [0.0]])
-    lasts_s = t_s[-1] - t_s[0]
-    ends_s = np.concatenate([[t_s[0] - lasts_s], edges_s, [t_s[-1] + lasts_s]])
     after = 1 + np.searchsorted(edges_s, t_s[begins], side="right")
-    least_s = np.median(np.diff(t_s))
-    crossed = step / np.maximum(ends_s[after] - ends_s[after - 1], least_s)
-    nearer_s = np.minimum(ends_s[after] - t_s[begins], t_s[begins] - ends_s[after - 1])
-    return np.where(ways[after] == ways[after - 1], ways[after], 0.0) * crossed, step / np.maximum(nearer_s, least_s)
+    ends_s, changes_s = (
+        np.concatenate([[first], edges_s, [last]]) for first, last in ((t_s[0], t_s[-1]), (-np.inf, np.inf))
+    )
+    shortest_s = np.median(np.diff(t_s))
+    crossed = step / np.maximum(ends_s[after] - ends_s[after - 1], shortest_s)
+    nearer_s = np.minimum(changes_s[after] - t_s[begins], t_s[begins] - changes_s[after - 1])
+    most = np.maximum(crossed, step / (4.0 * np.maximum(nearer_s, shortest_s)))
+    return np.where(ways[after] == ways[after - 1], ways[after], 0.0) * crossed, most

@@ -69,25 +69,27 @@ def test_a_window_that_begins_in_a_gap_starts_between_the_readings_on_either_sid
 
 
 def test_what_shows_no_motion_may_crawl_within_a_step():
-    """Steps of 0.5 at 10 Hz: 0.1 per second from rest at 0 s crosses one each 5 s; after 20 s it rests again.
-
-    Edges lie at 2.5, 7.5, 12.5 and 17.5 s: 1.5 s after the first row, 2.5 s about the second, 22.5 s before the third.
-    """
+    """Steps of 0.5 at 10 Hz: 0.1 per second from rest at 0 s crosses one each 5 s; after 20 s it rests again."""
     t_s = 0.1 * np.arange(601)
     y = 0.5 * np.round(0.1 * np.clip(t_s, 0.0, 20.0) / 0.5)
     speed, most = crawling(t_s, y, np.array([10, 100, 400]), 0.5)
     np.testing.assert_allclose(speed, [0.0, 0.1, 0.0], atol=2e-3)
-    np.testing.assert_allclose(most, [0.5 / 1.5, 0.5 / 2.5, 0.5 / 22.5], rtol=0.04)
+    np.testing.assert_allclose(most, [0.5 / 2.5, 0.1, 0.5 / 42.5], rtol=0.03)
 
 
-def test_what_stood_long_may_be_about_to_set_out():
-    """Truth: it stands for 60 s and runs at 0.1 from then on; the next step of 0.5 is crossed within 2.5 s of setting out."""
+def test_what_stood_long_may_be_setting_out_or_come_to_rest():
+    """Truth: it stands for 60 s and sets out by 0.02 per second squared: after 4 s it runs at 0.08, and 1 s later has gone half a step.
+
+    Thirty seconds before it is as still as the step's 0.5 in the 65 s until then say; backwards in time it comes to rest.
+    """
     t_s = 0.1 * np.arange(901)
-    y = 0.5 * np.round(0.1 * np.clip(t_s - 60.0, 0.0, None) / 0.5)
-    speed, most = crawling(t_s, y, np.array([300, 605]), 0.5)
+    y = 0.5 * np.round(0.01 * np.clip(t_s - 60.0, 0.0, None) ** 2 / 0.5)
+    speed, most = crawling(t_s, y, np.array([300, 640]), 0.5)
     assert speed.tolist() == [0.0, 0.0]
-    assert most[0] < 0.1 / 5.0
-    assert most[1] > 0.1
+    assert most == pytest.approx([0.5 / 65.0, 0.5 / 4.0], rel=0.05)
+    assert most[1] > 0.08
+    backwards = crawling(t_s, y[::-1], np.array([260, 600]), 0.5)
+    assert backwards[1] == pytest.approx(most[::-1], rel=0.01)
 
 
 @pytest.mark.parametrize("window_s", [0.4, 1.6])
