@@ -119,7 +119,7 @@ def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> I
         return
     breaks = list(break_findings(log, name))
     yield from breaks
-    own = list(value_findings(log, name, facts.steps, facts.positions, facts.stops))
+    own = list(value_findings(log, name, facts.steps, facts.positions, facts.stops, facts.moved_by))
     if any(entry.finding.severity == REFUSE for entry in own):
         yield from own
         return

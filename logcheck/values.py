@@ -79,8 +79,10 @@ def value_findings(
     steps: Mapping[str, float],
     positions: Collection[str] = (),
     stops: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+    moved_by: Mapping[str, Collection[str]] = MappingProxyType({}),
 ) -> Iterator[Found]:
-    """What is odd about the numbers, whatever the plant; `positions` are outputs that a mass moves, `stops` where it is stopped."""
+    """What is odd about the numbers, whatever the plant; `positions` are outputs that a mass moves, `stops` where it is stopped, and
+    `moved_by` by which inputs an output moves, where not by any."""
     yield from _missing_numbers(log, name)
     wrapped = list(wrap_findings(log, name, steps, positions))
     yield from wrapped
@@ -105,7 +107,7 @@ def value_findings(
     yield from dead
     if not held:
         yield from stale_findings(log, name, steps, positions)
-    yield from end_findings(without(log, dead), name, steps, begins, positions)
+    yield from end_findings(without(log, dead), name, steps, begins, positions, moved_by)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
 

@@ -6,6 +6,7 @@ is not read. At an end of its range an axis may be stopped. None of it is the pl
 """
 
 from collections.abc import Collection, Iterator, Mapping
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,16 +62,23 @@ def _states(bound: BoundPlant, t_s: Array, x0: Array, u: Array, locked: list[str
 
 
 def end_findings(
-    log: RunLog, name: str, steps: Mapping[str, float], begins: Rows, positions: Collection[str] = ()
+    log: RunLog,
+    name: str,
+    steps: Mapping[str, float],
+    begins: Rows,
+    positions: Collection[str] = (),
+    moved_by: Mapping[str, Collection[str]] = MappingProxyType({}),
 ) -> Iterator[Found]:
-    """The last stand of each output, where inputs would have moved it; `begins` (n,) and `positions` as for dead stretches."""
+    """The last stand of each output, where inputs would have moved it, of those that do (`moved_by`); `begins` (n,) and `positions` as for
+    dead stretches."""
     last = int(np.max(np.flatnonzero(begins), initial=0))
     for column in log.columns.outputs:
         found = last_stand(log, column, last, steps.get(column, 0.0))
         if found is None:
             continue
         present, begin, least = found
-        values, u = log.column(column)[present], log.u[present]
+        own = [name in moved_by.get(column, log.columns.inputs) for name in log.columns.inputs]
+        values, u = log.column(column)[present], log.u[present][:, own]
         if column in positions and _is_at_an_end(values, values[begin], least):
             continue
         waited, usually = _unanswered(values, u, begin)

@@ -1,6 +1,7 @@
 """A log whose last part is no flight: the rig off, or its sensor no longer read."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ from logcheck.stands.standing import end_findings, off_findings
 from logcheck.stretches import part
 from records.log import RunLog
 from sim.bind import BoundPlant
+from sim.columns import log_columns
 from tests.logcheck.flight import clean, plant
 from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
-from twinlaw import fly
+from tests.own_plants import BOAT
+from twinlaw import fly, load
 
 OFF = 1334  # of 2001 rows: two thirds
 
@@ -58,6 +61,20 @@ def test_an_axis_that_stands_at_an_end_of_its_range_may_be_stopped_and_what_no_m
     stands, begins = replace(log, y=y), np.zeros(len(log.t_s), bool)
     assert [found.finding.kind for found in end_findings(stands, "a", STEPS, begins)] == ["dead_end"]
     assert list(end_findings(stands, "a", STEPS, begins, ("psi_rad",))) == []
+
+
+def test_an_output_may_stand_where_only_inputs_move_that_do_not_move_it(tmp_path: Path) -> None:
+    """Truth: a boat that holds its speed to the last count while its rudder goes to and fro; its propeller's thrust stays as it is."""
+    boat = load(str(BOAT.write(tmp_path, "boat")))
+    assert plant_facts(boat).moved_by == {"v_m_s": {"thrust_N"}, "psi_rad": {"thrust_N", "rudder_rad"}}
+    t_s = 0.01 * np.arange(2000)
+    thrust_N = np.where(t_s < 10.0, 20.0 * (t_s // 1.0 % 2), 10.0)
+    rudder_rad = 0.3 * (t_s // 1.0 % 2)
+    v_m_s = np.where(t_s < 10.0, 0.1 * thrust_N, 1.0)
+    u, y = np.column_stack([thrust_N, rudder_rad]), np.column_stack([v_m_s, 0.1 * np.sin(t_s)])
+    log, begins = RunLog(log_columns(boat.model), 0.01, "closed", t_s, u, y), np.zeros(t_s.size, bool)
+    assert [found.finding.column for found in end_findings(log, "a", {}, begins)] == ["v_m_s"]
+    assert list(end_findings(log, "a", {}, begins, (), plant_facts(boat).moved_by)) == []
 
 
 @pytest.mark.parametrize(("rows", "told"), [(100, False), (400, True)])
