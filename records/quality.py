@@ -111,7 +111,18 @@ STEP_ERROR = Criterion(
     Limit(0.1, "steps", "a tenth of what the sensor can show"),
     Limit(1.0, "steps", "beyond it the sensor shows it"),
 )
-CRITERIA = (MISFIT, TRUTH, FREE_RUN, MARGINS, OVERSHOOT, STEADY_ERROR, STEADY_SHARE, STEP_ERROR)
+BRIDGED = Criterion(
+    "bridged",
+    "samples of an output of which nothing was read, so that a line between readings stands for them in a spectrum",
+    Limit(2.0, "%", "the power that a line lacks is less than the random errors of a response"),
+    Limit(
+        15.0,
+        "%",
+        "the response is that of the lines",
+        "sweeps of the CE150 cut off at three quarters of their range: 22 % bridged, and a damping 40 % off, outside its interval",
+    ),
+)
+CRITERIA = (MISFIT, TRUTH, FREE_RUN, MARGINS, OVERSHOOT, STEADY_ERROR, STEADY_SHARE, STEP_ERROR, BRIDGED)
 
 
 def missed_percent(left_rms: float, noise_rms: float, motion_rms: float) -> float:

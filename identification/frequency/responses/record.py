@@ -1,7 +1,7 @@
 """A run log as evenly spaced readings, in the form from which spectra are made."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,8 @@ class Record:
     """Inputs u (n, inputs), held from one row to the next, outputs y (n, outputs), and what was swept, r (n, inputs).
 
     In an open loop r is u. In a closed one noise comes back through u, and r are the references, which it does not reach, of all outputs
-    until `with_instruments` has chosen. `loop` is "open" or "closed".
+    until `with_instruments` has chosen. `loop` is "open" or "closed", `bridged` the share of samples of each output that was measured of
+    which nothing was read.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Record:
     y: Array
     r: Array
     loop: str = "open"
+    bridged: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def duration_s(self) -> float:
@@ -49,7 +51,8 @@ def record_of(log: RunLog, name: str, outputs: Sequence[str]) -> Record:
     if log.loop == "closed" and sum(name in log.extra for name in references) >= log.u.shape[1] > 0:
         r = np.column_stack([_held(log.extra.get(name, np.zeros(log.t_s.size))) for name in references])
     u = log.u[held]
-    return Record(name, log.sample_period_s, u, y, u if r is log.u else r[held], log.loop)
+    bridged = {output: max(0.0, 1.0 - np.isfinite(log.column(output)).sum() / count) for output in outputs}
+    return Record(name, log.sample_period_s, u, y, u if r is log.u else r[held], log.loop, bridged)
 
 
 def _held(values: Array) -> Array:

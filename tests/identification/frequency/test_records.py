@@ -21,6 +21,7 @@ def test_a_lost_row_and_a_missing_reading_lie_on_lines_and_the_input_before_is_h
     found = record_of(log(t_s, [1.0, 2.0, 3.0, 4.0, 5.0], [0.0, 1.0, 3.0, np.nan, 5.0]), "gap", ("x_rad",))
     np.testing.assert_allclose(found.y[:, 0], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0])
     np.testing.assert_array_equal(found.u[:, 0], [1.0, 2.0, 2.0, 3.0, 4.0, 5.0])
+    assert found.bridged == {"x_rad": pytest.approx(2.0 / 6.0)}
 
 
 def test_an_output_that_was_never_read_is_refused():
