@@ -6,8 +6,9 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.forward import forward, gain_of
 from diagnosis.detect.linearisation import Linearisation, Scores
-from diagnosis.hypothesis.case import Case
-from sim.effect import Effect, Role, Values
+from diagnosis.hypothesis.case import Case, FilteredLog, told_from_s
+from diagnosis.hypothesis.hypothesis import Hypothesis
+from sim.effect import Effect, EffectParameter, Role, Values
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,25 @@ def happens(effect: Effect, values: Values) -> bool:
     """Whether it is an event in these logs: not where its instant was pushed to the beginning of time, from where on it stays as it is."""
     instant, ends = effect.having(Role.INSTANT), effect.having(Role.DURATION) is not None
     return instant is not None and (ends or values[instant.symbol] > instant.lower)
+
+
+def happened(case: Case, hypothesis: Hypothesis) -> bool:
+    """Whether each event that does not end happens in some log while its readings count: before, it is another value of what it changes."""
+    return all(
+        any(_between(flight, hypothesis.over(flight).effects[name][instant.symbol]) for flight in case.flights)
+        for name in case.added(hypothesis.effects)
+        if (instant := _lasting(case.library.effects[name])) is not None
+    )
+
+
+def _lasting(effect: Effect) -> EffectParameter | None:
+    """The instant from which on an effect stays; None of any other."""
+    return None if effect.having(Role.DURATION) else effect.having(Role.INSTANT)
+
+
+def _between(flight: FilteredLog, instant_s: float) -> bool:
+    t_s = flight.log.t_s
+    return told_from_s(t_s) < instant_s < float(t_s[-1])
 
 
 def _jumps(linearisation: Linearisation, target: int) -> list[float]:

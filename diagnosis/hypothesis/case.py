@@ -187,10 +187,14 @@ def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:
     return found
 
 
+def told_from_s(t_s: Array) -> float:
+    """From when on readings of a log count."""
+    return float(t_s[0] + min(decisions.UNTOLD_S, decisions.UNTOLD_SHARE * (t_s[-1] - t_s[0])))
+
+
 def _found_its_state(filter_input: FilterInput) -> FilterInput:
     """The filter input whose first readings do not count: until the filter knows the speeds, its innovations tell of its own start."""
-    since = filter_input.t_s - filter_input.t_s[0]
-    untold = since < min(decisions.UNTOLD_S, decisions.UNTOLD_SHARE * since[-1])
+    untold = filter_input.t_s < told_from_s(filter_input.t_s)
     place, usual = filter_input.place.copy(), filter_input.usual.copy()
     place[untold], usual[untold] = -1, 0.0
     return replace(filter_input, place=place, usual=usual)

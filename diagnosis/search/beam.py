@@ -7,6 +7,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decisions import decided
+from diagnosis.detect.instants import happened
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.detect.unlike import unlike
@@ -134,8 +135,9 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         if _best(found).evidence <= best[0].evidence:
             break
     _settle(case, found, first)
-    certain = [entry for entry in found.values() if _certain(entry, found)]
-    fitted = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
+    told = [entry for entry in found.values() if happened(case, entry.fit.hypothesis)]
+    certain = [entry for entry in told if _certain(entry, found)]
+    fitted = sorted([first, *(certain or told)], key=lambda entry: -entry.evidence)
     rules = _rules(found, certain, fitted[0])
     return Search(tuple(fitted), first, bool(certain), begun.linearisation, begun.score_tests, rules)
 
@@ -152,7 +154,7 @@ def with_twins(case: Case, told: Search, first: FittedHypothesis) -> Search:
     """
     found = {frozenset(entry.effects): entry for entry in told.fitted}
     ends = with_noise_of(case, fit_twins(case, found, first), first)
-    kept = [entry for entry in ends if _certain(entry, found)]
+    kept = [entry for entry in ends if _certain(entry, found) and happened(case, entry.fit.hypothesis)]
     if not kept:
         return told
     better = {frozenset(entry.effects): entry for entry in told.fitted}
