@@ -59,7 +59,7 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
     variants = {variant: _named(outputs, np.sqrt(_means(squares[variant]))) for variant in MODEL_VARIANTS}
     count = len(squares["after"])
     fraction = _fractions(squares, floor, np.ones((1, count)))
-    spread = _fractions(squares, floor, _drawn(count))
+    spread = np.minimum(_fractions(squares, floor, _drawn(count)), 1.0)  # no draw takes away more than all that can be
     interval = (float(np.percentile(spread, 2.5)), float(np.percentile(spread, 97.5))) if spread.size else None
     return Shrinkage(
         rms_nominal=variants["nominal"],

@@ -32,3 +32,14 @@ def test_the_share_that_is_gone_is_never_more_than_all(before: float, after: flo
     told = shrinkage(CASE, [found(5.0, before, after)])
     assert told.fraction == pytest.approx(gone)
     assert told.rms_floor["theta_rad"] == pytest.approx(NOISE * min(after, 1.0))
+
+
+def test_its_interval_ends_at_all_that_can_be_gone() -> None:
+    # Truth: in half of the windows the plant errs as its sensor does, so that some draws have next to nothing to remove, and more is gone.
+    told = found(5.0, 1.02, 1.0)
+    rows = np.arange(len(FLIGHT.log.t_s)) % 200 < 100
+    for variant, error in (("before", 1.6), ("after", 0.9)):
+        told.by[variant][rows] = FLIGHT.log.y[rows] + error * (told.by[variant] - FLIGHT.log.y)[rows]
+    interval = shrinkage(CASE, [told]).fraction_ci95
+    assert interval is not None
+    assert interval[0] < interval[1] <= 1.0
