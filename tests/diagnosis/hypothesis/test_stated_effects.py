@@ -76,7 +76,7 @@ def test_another_size_of_the_stated_effect_is_a_re_tune(plant: BoundPlant, fly: 
     case = make_case(effect_library(plant), [fly(13, {DRAG: {"c": 4e-3}}, LONG_S, rig_seed=RIG)], stated=stated)
     found = retune(case, nominal_fit(case))
     assert found is not None
-    assert (found.parameters, found.places) == ((f"{DRAG}.c",), ("elevation",))
+    assert (found.parameters, found.places) == ((f"{DRAG}.c",), {"elevation": 1.0})
     assert bind(improved_plant(case, found.fitted)).effects[DRAG]["c"].values[0] == pytest.approx(4e-3, rel=0.1)
 
 
