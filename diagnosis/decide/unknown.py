@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.detect.detection import MEAN_GAIN, FormScores, gains
-from diagnosis.detect.forms import Form
 from records.text.functional_class import parse_class
 from sim.effect import Effect
 
@@ -76,6 +75,3 @@ def class_gain(by_form: FormScores, members: Sequence[int]) -> float:
         score = score - share * score[best]
         gram = gram - np.outer(share, gram[best])
     return total
-
-
-__all__ = ["Form", "Suspect", "class_gain", "suspects"]

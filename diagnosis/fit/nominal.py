@@ -9,7 +9,7 @@ from diagnosis.fit.coloured_noise import coloured_noise_of, colours, with_colour
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, has_memory, nominal_hypothesis
 from jobs.thread_map import thread_map
 from records.errors import BadInput
 
@@ -91,8 +91,7 @@ def with_memory(case: Case, found: Fit) -> Fit:
 
 def with_memory_from(case: Case, found: Fit, known: Hypothesis) -> Fit:
     """The fit with noise with a memory, sought from that of another hypothesis."""
-    has_memory = any(colour.of(known) is not None for colour in colours(case))
-    return with_memory(case, with_memory_of(case, found, known) if has_memory else found)
+    return with_memory(case, with_memory_of(case, found, known) if has_memory(case, known) else found)
 
 
 def with_memory_of(case: Case, found: Fit, known: Hypothesis) -> Fit:

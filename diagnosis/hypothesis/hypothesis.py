@@ -92,6 +92,11 @@ def noise_on(case: Case, axis: int) -> Effect | None:
     return next((e for n in case.library.noises if (e := case.library.effects[n]).place == name), None)
 
 
+def has_memory(case: Case, hypothesis: Hypothesis) -> bool:
+    """Whether it has noise with a memory, of an axis or of readings."""
+    return bool(hypothesis.reading_noise) or any(case.library.effects[name].is_noise for name in hypothesis.effects)
+
+
 def scaled(case: Case, hypothesis: Hypothesis, axis: int, level: float) -> Hypothesis:
     """The same with the process noise of an axis at `level`, and what comes and goes there grown or shrunk as much."""
     process_noise = hypothesis.process_noise.copy()

@@ -9,7 +9,7 @@ from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
+from diagnosis.hypothesis.hypothesis import Hypothesis, has_memory, noise_on
 from records.reasons import Decision
 from sim.effect import Role
 
@@ -48,17 +48,11 @@ def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     }
 
 
-def has_memory(case: Case, fitted: FittedHypothesis) -> bool:
-    """Whether it has noise with a memory, of an axis or of readings."""
-    hypothesis = fitted.fit.hypothesis
-    return bool(gust_shares(case, hypothesis) or hypothesis.reading_noise)
-
-
 def without_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
     """The same fitted without any noise with a memory, of axes or of readings; None where it has none, or cannot follow its logs then."""
-    if not has_memory(case, fitted):
-        return None
     hypothesis = fitted.fit.hypothesis
+    if not has_memory(case, hypothesis):
+        return None
     gusts = list(gust_shares(case, hypothesis))
     read = replace(fitted, fit=replace(fitted.fit, hypothesis=replace(hypothesis, reading_noise={})))
     return without_gusts(case, read, gusts)

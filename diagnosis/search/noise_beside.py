@@ -12,8 +12,7 @@ from diagnosis.fit.foretold import foretold_of
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import as_noisy
-from diagnosis.search.draughts import has_memory
+from diagnosis.hypothesis.hypothesis import as_noisy, has_memory
 from diagnosis.search.exchange import is_twin
 from diagnosis.validate.fitted_logs import FittedLogs
 from jobs.thread_map import thread_map
@@ -82,7 +81,7 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
     least = max(entry.evidence for entry in (first, *begun.values())) - decisions.NEAR_BEST
     near = [entry for entry in sorted(asked, key=lambda entry: -begun[entry].evidence) if reach[entry] >= least]
     own = _until_noise(case, near, begun, first, left, least)
-    known = [first, *(end for end in own.values() if end is not None and has_memory(case, end))]
+    known = [first, *(end for end in own.values() if end is not None and has_memory(case, end.fit.hypothesis))]
     least = max(least, *(entry.evidence - decisions.NEAR_BEST for entry in known))
     rest = [entry for entry in near if entry not in own and reach[entry] >= least]
     found = thread_map(lambda entry: _own_noise(case, entry, begun[entry], known, left, least), rest)
@@ -102,7 +101,7 @@ def _until_noise(
     own = dict[FittedHypothesis, FittedHypothesis | None]()
     for entry in near:
         own[entry] = found = _own_noise(case, entry, begun[entry], [first], left, least)
-        if found is not None and has_memory(case, found):
+        if found is not None and has_memory(case, found.fit.hypothesis):
             break
     return own
 
@@ -137,13 +136,13 @@ def _own_noise(
     likelier."""
     found = list[FittedHypothesis]()
     for other in known:
-        shared = _settled_under(case, fitted, begun, other) if has_memory(case, other) else fitted
+        shared = _settled_under(case, fitted, begun, other) if has_memory(case, other.fit.hypothesis) else fitted
         if shared is None:
             continue
         found.append(shared)
         promised = _foretold(case, shared) - left
         # Under noise with a memory parameters have come back already.
-        back = 1.0 if has_memory(case, shared) else decisions.PARAMETERS_BACK
+        back = 1.0 if has_memory(case, shared.fit.hypothesis) else decisions.PARAMETERS_BACK
         if promised < decisions.TAKEN_IN or shared.evidence + back * promised < least:
             return max(found, key=lambda entry: entry.evidence)
     own = _with_memory(case, fitted)
@@ -153,7 +152,7 @@ def _own_noise(
 def with_noise_of(case: Case, fitted: Sequence[FittedHypothesis], known: FittedHypothesis) -> list[FittedHypothesis]:
     """Hypotheses with the noise with a memory that one has which they are to be compared with: none where it has none. Those in which it
     would be more than noise are left out."""
-    if not has_memory(case, known):
+    if not has_memory(case, known.fit.hypothesis):
         return list(fitted)
     found = thread_map(lambda entry: _settled_under(case, entry, entry, known), fitted)
     return [entry for entry in found if entry is not None]
