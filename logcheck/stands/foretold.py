@@ -15,7 +15,7 @@ from logcheck.ahead import read_ahead, states_along, with_axes_as_read
 from logcheck.facts import PlantFacts
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows, without
 from logcheck.stands.column import runs
-from logcheck.stands.standing import RUN_UP_S, last_stand
+from logcheck.stands.standing import RUN_UP_S, dead_end, last_stand
 from records.log import RunLog
 from records.text.units import unit_of
 from sim.bind import BoundPlant
@@ -91,14 +91,7 @@ def _last_stand(
         return
     off = _off(log, bound, column, np.arange(len(log.t_s)) >= present[begin], first, least)
     if off.tells:
-        unread: Rows = np.zeros(len(log.t_s), bool)
-        unread[present[begin + 1 :]] = True
-        span = (float(log.t_s[present[begin]]), float(log.t_s[present[-1]]))
-        sentence = (
-            f"{column} stands at {log.column(column)[present[begin]]:.4g} from {span[0]:.6g} s to the end, "
-            f"{off.told(unit_of(column) or '')}: the sensor was not read; left out"
-        )
-        yield Found(Finding("dead_end", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
+        yield dead_end(log, name, column, present, begin, f"{off.told(unit_of(column) or '')}: the sensor was not read")
 
 
 def _off(log: RunLog, bound: BoundPlant, column: str, stands: Rows, first: int, least: float) -> _Off:

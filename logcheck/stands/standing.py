@@ -84,14 +84,21 @@ def end_findings(
         waited, usually = _unanswered(values, u, begin)
         if waited < max(thresholds.ANSWER_ROWS, thresholds.ANSWER_TIMES * (usually + 1)):
             continue
-        unread: Rows = np.zeros(len(log.t_s), bool)
-        unread[present[begin + 1 :]] = True
-        span = (float(log.t_s[present[begin]]), float(log.t_s[present[-1]]))
-        sentence = (
-            f"{column} stands at {values[begin]:.4g} from {span[0]:.6g} s to the end, {waited} rows of it after inputs had moved by half "
-            f"their range, which it answers within {usually + 1} elsewhere: the rig was off, or the sensor was not read; left out"
+        why = (
+            f"{waited} rows of it after inputs had moved by half their range, which it answers within {usually + 1} elsewhere: the rig was "
+            "off, or the sensor was not read"
         )
-        yield Found(Finding("dead_end", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
+        yield dead_end(log, name, column, present, begin, why)
+
+
+def dead_end(log: RunLog, name: str, column: str, present: NDArray[np.int64], begin: int, why: str) -> Found:
+    """The finding of an output's last stand, which is left out: of the rows in which it was read, `present` (k,), that from `begin` on."""
+    unread: Rows = np.zeros(len(log.t_s), bool)
+    unread[present[begin + 1 :]] = True
+    span = (float(log.t_s[present[begin]]), float(log.t_s[present[-1]]))
+    level = log.column(column)[present[begin]]
+    sentence = f"{column} stands at {level:.4g} from {span[0]:.6g} s to the end, {why}; left out"
+    return Found(Finding("dead_end", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
 
 
 def last_stand(log: RunLog, column: str, first: int, step: float) -> tuple[NDArray[np.int64], int, float] | None:
