@@ -20,7 +20,7 @@ BEYOND_CHANCE = Limit(
     3.0,
     "standard deviations",
     "chance goes no further, 0.3 % of estimates apart: two runs told apart, an error's response, a delay of other than whole rows, a "
-    "parameter beyond its spread, which pays in full, as no form a little off makes that cheaper",
+    "number at which the logs pull, a parameter beyond its spread, which pays in full, as no form a little off makes that cheaper",
     "EMPS, where a friction that falls with speed fits better with another friction fifteen of them from what is published",
 )
 
@@ -296,9 +296,14 @@ PARAMETERS_BACK = Limit(
     "third rig, seed 344: right names gained 2.2 and 3.0 times as much",
 )
 NO_NOISE_SHARE = Limit(0.02, "shares of the least start", "a smaller noise with a memory is none")
-RETUNE_WIDER = Limit(8.0, "factor", "by which the spreads of what had moved are taken wider")
+RETUNE_WIDER = Limit(
+    8.0,
+    "factor",
+    "by which a spread is taken wider at least where the logs pull at its number; an effect whose reference size lies within is nothing "
+    "but another value of that number",
+)
 RETUNE_NATS = Limit(4.0, "nats", "that each parameter beyond its spread costs")
-RETUNE_MOST = Count(4, "parameters", "more are no re-tune")
+RETUNE_MOST = Count(4, "parameters", "set free one after another: more are no re-tune")
 
 # How probable (decide)
 ALIKE_SCALES = Limit(

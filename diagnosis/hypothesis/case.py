@@ -188,7 +188,7 @@ def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:
 
 
 def told_from_s(t_s: Array) -> float:
-    """From when on readings of a log count."""
+    """From when on readings of a log count, in s; `t_s` (n,) are its instants."""
     return float(t_s[0] + min(decisions.UNTOLD_S, decisions.UNTOLD_SHARE * (t_s[-1] - t_s[0])))
 
 
