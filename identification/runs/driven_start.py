@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from identification.model.driven import driven_model
-from identification.model.motion import move
 from identification.model.subsystem import subsystem
 from identification.runs.run import Carried
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.model import Model
+from sim.runs.sensitivities import sensitivities
 
 Array = NDArray[np.float64]
 FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
@@ -82,7 +82,7 @@ def _left_of_others(driven: BoundPlant, t_s: Array, u: Array, x0: Array, rest: A
 
 
 def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
-    return move(driven.model, t_s, u, driven.p, (slice(0, t_s.size),), x0[None, :], ()).x
+    return sensitivities(driven.model, t_s, u, driven.p, (slice(0, t_s.size),), x0[None, :], ()).x
 
 
 def _largest_inputs(bound: BoundPlant) -> Array:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.model.motion import Motion, move
 from identification.runs.run import Run, coefficient_names, inputs_of, known_names, offset_names, parameters_of
+from sim.runs.sensitivities import Sensitivities, sensitivities
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def _readings(run: Run, p: Array, u: Array, columns: tuple[str, ...]) -> tuple[A
     """Readings (m,) and their slopes (m, columns + free)."""
     starts = tuple(f"x0.{state}" for state in run.free)
     if run.carried is None:
-        motion = move(run.bound.model, run.t_s, u, p, run.windows, run.x0, columns + starts, run.substeps)
+        motion = sensitivities(run.bound.model, run.t_s, u, p, run.windows, run.x0, columns + starts, run.substeps)
     else:
         motion = _with_carried(run, p, u, columns, starts)
     y, slopes = (motion.y, motion.dy) if run.observed is None else _observed(run, p, u, motion)
@@ -59,7 +59,7 @@ def _readings(run: Run, p: Array, u: Array, columns: tuple[str, ...]) -> tuple[A
     return run.select @ flat_y, run.select @ flat_slopes
 
 
-def _with_carried(run: Run, p: Array, u: Array, columns: tuple[str, ...], starts: tuple[str, ...]) -> Motion:
+def _with_carried(run: Run, p: Array, u: Array, columns: tuple[str, ...], starts: tuple[str, ...]) -> Sensitivities:
     """The windows with their carried states put in: these follow from the whole run before, and so do their slopes."""
     assert run.carried is not None
     model, part = run.bound.model, run.carried.bound.model
@@ -69,21 +69,21 @@ def _with_carried(run: Run, p: Array, u: Array, columns: tuple[str, ...], starts
     values = np.ascontiguousarray(p[[known.index(name) for name in own]])
     whole = (slice(0, run.t_s.size),)
     wanted = tuple(name for name in columns if name in own or name in offset_names(part))
-    carried = move(part, run.t_s, u[:, inputs], values, whole, run.carried.x0[None, :], wanted, run.substeps)
+    carried = sensitivities(part, run.t_s, u[:, inputs], values, whole, run.carried.x0[None, :], wanted, run.substeps)
     x0 = run.x0.copy()
     x0[:, [model.states.index(state) for state in part.states]] += carried.x[run.begins]
     through = tuple(f"x0.{state}" for state in part.states)
     kept = columns + starts
     every = (*kept, *(name for name in through if name not in kept))
-    motion = move(model, run.t_s, u, p, run.windows, x0, every, run.substeps)
+    motion = sensitivities(model, run.t_s, u, p, run.windows, x0, every, run.substeps)
     slopes = motion.dy[:, :, : len(kept)].copy()
     places, passing = [columns.index(name) for name in wanted], [every.index(name) for name in through]
     for rows, begin in zip(run.windows, run.begins, strict=True):
         slopes[rows][:, :, places] += motion.dy[rows][:, :, passing] @ carried.dy[begin]
-    return Motion(kept, motion.y, slopes, motion.x)
+    return Sensitivities(kept, motion.y, slopes, motion.x)
 
 
-def _observed(run: Run, p: Array, u: Array, motion: Motion) -> tuple[Array, Array]:
+def _observed(run: Run, p: Array, u: Array, motion: Sensitivities) -> tuple[Array, Array]:
     """What the sensors show, with slopes through the state and directly by the parameters; the model's outputs are all its states."""
     h, names = run.observed, coefficient_names(run.bound.model)
     assert h is not None

@@ -21,7 +21,6 @@ class Play:
     output: int
     width: float
     order: ClassVar[int] = 0
-    linear: ClassVar[bool] = False
 
     def __call__(self, signal: Trace, memory: Any) -> tuple[Trace, Any]:
         """See OutputStage; remembers where the follower is."""
@@ -37,7 +36,6 @@ class OutputLag:
     output: int
     tau_s: float
     order: ClassVar[int] = 1
-    linear: ClassVar[bool] = True
 
     def __call__(self, signal: Trace, memory: Any) -> tuple[Trace, Any]:
         """See OutputStage; remembers the last sample and how far it was behind."""
@@ -81,7 +79,6 @@ class OutputDelay:
     jitter_s: float = 0.0
     seed: int = 0
     order: ClassVar[int] = 2
-    linear: ClassVar[bool] = True
 
     def __call__(self, signal: Trace, memory: Any) -> tuple[Trace, Any]:
         """See OutputStage; remembers the number of samples and those that are still needed."""
@@ -104,7 +101,6 @@ class OutputSteps:
     output: int
     q: float
     order: ClassVar[int] = 3
-    linear: ClassVar[bool] = False
 
     def __call__(self, signal: Trace, memory: Any) -> tuple[Trace, Any]:
         """See OutputStage; remembers nothing."""

@@ -52,7 +52,6 @@ class OutputStage(Protocol):
     """A stage on the way of the output number `output`; those of lower `order` come first, from the axis on."""
 
     order: ClassVar[int]
-    linear: ClassVar[bool]  # derivatives pass it as the output does
 
     @property
     def output(self) -> int:

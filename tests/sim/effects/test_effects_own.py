@@ -31,7 +31,6 @@ OTHER_THINGS: Mapping[str, tuple[str, set[str]]] = {
     "identification/frequency/lateral.py": ("the bank of another aircraft's flight", {"Phi_0"}),
     "identification/frequency/responses/conditioned.py": ("references of a record", {"r"}),
     "identification/frequency/result.py": ("a cost", {"J"}),
-    "identification/model/motion.py": ("the vector of coefficients", {"p"}),
     "identification/proof/linear_rotor.py": ("a parameter of the plant", {"K"}),
     "replay/law.py": ("rows of a controller's table", {"a", "c", "p", "q"}),
     "replay/lone.py": ("rows of a controller's table", {"a", "p"}),

@@ -10,7 +10,6 @@ from records.plant import load_plant
 from sim.added_effects import combined, effect_values, library, with_effects, with_values
 from sim.bind import BoundPlant, bind
 from sim.effect import Effect, coefficient
-from sim.runs.sensitivities import sensitivities
 from sim.simulate import simulate
 from tests.sim.conftest import PLANTS
 from tests.sim.plain_rig import (
@@ -24,6 +23,7 @@ from tests.sim.plain_rig import (
     PlainRig,
     commands,
 )
+from tests.sim.slopes import slopes as slopes_of
 from tests.soak import SOAK, sampled
 
 BOUND = bind(load_plant(PLANTS / "ce150.toml"))
@@ -203,7 +203,7 @@ def test_derivatives_by_an_effect_s_parameters_are_those_of_runs(everything: Bou
     chosen = _off_its_bounds(case(name))
     bound = placed(everything, chosen)
     columns = tuple(coefficient(name, symbol) for symbol in chosen.values)
-    found = sensitivities(bound, T_S, U, ordered(chosen.start), columns).dy
+    found = slopes_of(bound, T_S, U, ordered(chosen.start), columns).dy
     assert np.all(np.isfinite(found))
     for place, (symbol, value) in enumerate(chosen.values.items()):
         entry = LIBRARY[name].parameter[symbol]
@@ -221,7 +221,7 @@ def test_all_effects_at_next_to_no_size_have_derivatives_by_their_sizes() -> Non
     names = [name for name, effect in LIBRARY.items() if effect.on_equations]
     bound = combined(BOUND, names)
     columns = tuple(coefficient(name, LIBRARY[name].size.symbol) for name in names)
-    slopes = sensitivities(bound, T_S, U, ordered(Case.start), columns).dy
+    slopes = slopes_of(bound, T_S, U, ordered(Case.start), columns).dy
     seen = {name for name, reached in zip(names, np.any(slopes != 0.0, axis=(0, 1)), strict=True) if reached}
     unreached = {
         "psi_sensor.count_slip",

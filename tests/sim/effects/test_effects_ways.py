@@ -6,16 +6,14 @@ import pytest
 from records.errors import BadInput
 from records.plant import load_plant
 from records.table import ControllerTable
-from sim.added_effects import combined, library, with_effects, with_values
+from sim.added_effects import combined, library, with_effects
 from sim.bind import BoundPlant, bind
-from sim.effect import coefficient
 from sim.loop import fly_law
 from sim.manoeuvres import hop
 from sim.paths.input_stages import Delay, DroppedFrames, Lag, Quantised, SlewLimit
 from sim.paths.output_stages import OutputDelay
 from sim.paths.path import Held, Trace
 from sim.runs.on_the_way import arriving
-from sim.runs.sensitivities import sensitivities
 from sim.runs.stepped import SteppedPlant
 from sim.simulate import Noise, simulate
 from tests.sim.conftest import PLANTS
@@ -149,35 +147,6 @@ def test_a_dead_band_stands_before_a_lag_of_the_same_input() -> None:
     mean = 1.0 - tau / d * (1 - np.exp(-d / tau))
     within = (arrived.t_s > 0.0095) & (arrived.t_s < 0.0195)
     assert arrived.u[within, 0].mean() == pytest.approx(mean, rel=1e-9)
-
-
-@pytest.mark.parametrize("name", [name for name in WAYS if library(BOUND)[name].smooth])
-def test_derivatives_by_a_way_s_parameter_are_those_of_runs(name: str) -> None:
-    """To the second order of the step that makes them: 1 % of the largest."""
-    bound = with_effects(BOUND, values(name))
-    entry = library(BOUND)[name].size
-    step = 1e-3 * entry.reference
-    ends = [outputs(with_values(bound, {name: {entry.symbol: entry.reference + sign * step}})) for sign in (1, -1)]
-    expected = (ends[0] - ends[1]) / (2 * step)
-    found = sensitivities(bound, T_S, U, START, (coefficient(name, entry.symbol), "K_M")).dy
-    np.testing.assert_allclose(found[:, :, 0], expected, rtol=0, atol=1e-2 * np.abs(expected).max())
-
-
-def test_derivatives_by_parameters_pass_the_ways_of_inputs_and_outputs() -> None:
-    chosen = ("loop.delay", "tail_input.lag", "psi_sensor.delay", "phi_sensor.lag")
-    bound = with_effects(BOUND, {key: numbers for name in chosen for key, numbers in values(name).items()})
-    names = ("K_M", "J_A", "b_vE", "x0.psi_dot_rad_s")
-    found = sensitivities(bound, T_S, U, START, names)
-    np.testing.assert_allclose(found.y, outputs(bound), rtol=0, atol=1e-12)
-    for place, name in enumerate(names[:3]):
-        index = [str(symbol) for symbol in bound.model.parameter_symbols].index(name)
-        ends = []
-        for sign in (1, -1):
-            p = bound.p.copy()
-            p[index] *= 1 + sign * 1e-4
-            ends.append(simulate(bound, T_S, START, U, p=p, resolution=EXACT).y)
-        expected = (ends[0] - ends[1]) / (2e-4 * bound.p[index])
-        np.testing.assert_allclose(found.dy[:, :, place], expected, rtol=0, atol=1e-3 * np.abs(expected).max())
 
 
 def test_next_to_no_delay_moves_the_run_as_the_nominal_plant() -> None:

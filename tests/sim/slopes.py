@@ -1,0 +1,14 @@
+"""Exact derivatives of one run of a whole plant."""
+
+import numpy as np
+
+from sim.bind import BoundPlant
+from sim.runs.sensitivities import Sensitivities, sensitivities
+from sim.start import start_state
+
+
+def slopes(
+    bound: BoundPlant, t_s: np.ndarray, u: np.ndarray, x0: np.ndarray, columns: tuple[str, ...]
+) -> Sensitivities:
+    """One window over all rows, with the plant's own parameters; states of effects that x0 lacks begin at rest."""
+    return sensitivities(bound.model, t_s, u, bound.p, (slice(0, t_s.size),), start_state(bound, x0)[None, :], columns)
