@@ -7,8 +7,8 @@ from rig.flight.controller import BoardController
 from rig.flight.loop_session import ATTEMPTS, LoopSession
 from rig.flight.timing import ROUNDS, SAMPLES, line_timing
 from rig.link.client import Refused
-from rig.link.hostile_line import HostileLine
-from rig.link.hostile_line_faults import HostPause
+from tests.rig.link.hostile_line import HostileLine
+from tests.rig.link.hostile_line_faults import HostPause
 from tests.rig.link.hostile_sessions import connect, counted_steps
 from tests.rig.link.timed_box import BYTE_S, TICK_S, TimedBox
 

@@ -12,8 +12,10 @@ from typing import Any
 
 from records.protocol import PROTOCOL
 from rig.link.frames import Frame, FrameReceiver, encode_frame
-from rig.link.hostile_line import Channel
-from rig.link.hostile_line_faults import (
+from tests.docs.tables import keep
+from tests.firmware.box import DIGEST, REFUSALS, word
+from tests.rig.link.hostile_line import Channel
+from tests.rig.link.hostile_line_faults import (
     Babble,
     Direction,
     DoubleBytes,
@@ -25,8 +27,6 @@ from rig.link.hostile_line_faults import (
     SwapFrames,
     TruncateFrames,
 )
-from tests.docs.tables import keep
-from tests.firmware.box import DIGEST, REFUSALS, word
 from tests.rig.link.line_box import LineBox
 
 SAMPLE = PROTOCOL.message("SAMPLE").code

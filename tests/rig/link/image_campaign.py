@@ -17,14 +17,14 @@ from records.errors import BadInput
 from records.table import ControllerTable
 from rig.flight.line_law import LineLaw
 from rig.link.client import BoardClient
-from rig.link.hostile_line import HostileLine
-from rig.link.hostile_line_faults import Direction, Noise
 from rig.link.numbers import numbers_of
 from rig.link.port import open_port
 from tests.docs.tables import keep
 from tests.law_tables import ce150_table
 from tests.rig.images import emulated_url
 from tests.rig.link.campaign import REFUSALS, usual_faults
+from tests.rig.link.hostile_line import HostileLine
+from tests.rig.link.hostile_line_faults import Direction, Noise
 from verification.fixed_stimuli import fixed_sequences
 from verification.host_law import host_law
 from verification.stateless import Stateless

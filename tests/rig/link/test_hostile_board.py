@@ -9,8 +9,10 @@ import pytest
 from records.errors import BadInput
 from records.protocol import PROTOCOL
 from rig.link.frames import encode_frame
-from rig.link.hostile_line import HostileLine
-from rig.link.hostile_line_faults import (
+from rig.link.port import open_port
+from tests.rig.link.campaign import usual_faults
+from tests.rig.link.hostile_line import HostileLine
+from tests.rig.link.hostile_line_faults import (
     BaudMismatch,
     BoardReset,
     Direction,
@@ -24,8 +26,6 @@ from rig.link.hostile_line_faults import (
     StuckLine,
     TruncateFrames,
 )
-from rig.link.port import open_port
-from tests.rig.link.campaign import usual_faults
 from tests.rig.link.hostile_sessions import complete_or_one_line, connect, counted_steps, session
 from tests.soak import SOAK, sampled
 

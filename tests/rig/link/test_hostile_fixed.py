@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from rig.link.hostile_line import HostileLine
-from rig.link.hostile_line_faults import AtByte, Direction
 from rig.link.port import open_port
 from tests.docs.tables import line
 from tests.law_tables import ce150_table
+from tests.rig.link.hostile_line import HostileLine
+from tests.rig.link.hostile_line_faults import AtByte, Direction
 from tests.rig.link.image_campaign import built_url, connected, differing_steps, flown, rows
 from tests.soak import SOAK
 from verification.fixed_stimuli import fixed_sequences

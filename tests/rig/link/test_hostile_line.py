@@ -4,8 +4,10 @@ import random
 
 import pytest
 
-from rig.link.hostile_line import Channel, HostileLine
-from rig.link.hostile_line_faults import (
+from rig.link.port import open_port
+from tests.rig.link.campaign import usual_faults
+from tests.rig.link.hostile_line import Channel, HostileLine
+from tests.rig.link.hostile_line_faults import (
     AtByte,
     Babble,
     Direction,
@@ -20,8 +22,6 @@ from rig.link.hostile_line_faults import (
     SwapFrames,
     TruncateFrames,
 )
-from rig.link.port import open_port
-from tests.rig.link.campaign import usual_faults
 from tests.rig.link.hostile_sessions import connect, counted_steps, session
 from tests.rig.link.timed_box import TimedBox
 

@@ -5,9 +5,9 @@ from random import Random
 
 import pytest
 
-from rig.link.hostile_line import HostileLine
-from rig.link.hostile_line_faults import AtByte, Direction, FrameFault, Passing
 from tests.docs.tables import grouped
+from tests.rig.link.hostile_line import HostileLine
+from tests.rig.link.hostile_line_faults import AtByte, Direction, FrameFault, Passing
 from tests.rig.link.hostile_sessions import complete_or_one_line, connect, counted_steps, session
 from tests.rig.link.timed_box import BYTE_S, TICK_S, TimedBox
 from tests.soak import SOAK

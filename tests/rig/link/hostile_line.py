@@ -10,7 +10,7 @@ from typing import Any
 
 from records.protocol import PROTOCOL
 from rig.emulator.disturbance import disturb, stick
-from rig.link.hostile_line_faults import (
+from tests.rig.link.hostile_line_faults import (
     DELIMITER,
     BaudMismatch,
     BoardReset,
