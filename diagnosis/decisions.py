@@ -1,13 +1,13 @@
 """Every constant that decides something in a diagnosis: value, unit, reason, and the data that set it.
 
-What only bounds an iteration, spaces a grid or scales a number stands where it is used. `table()` lists all of these.
+What only bounds an iteration, spaces a grid or scales a number stands where it is used.
 """
 
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from records.deciding import Count, Counts, Decides, Limit, Limits
+from records.deciding import Count, Counts, Decides, Limit, Limits, deciding
 from records.errors import BadInput
 from records.reasons import Decision
 
@@ -430,11 +430,6 @@ NATS_PER_TERM = Limit(
 FURTHER_TERM_SHARE = Limit(0.1, "share of the gain so far", "that a further term must add")
 
 
-def table() -> Iterator[tuple[str, Decides]]:
-    """Name and constant of each, in the order of the rooms."""
-    return ((name, value) for name, value in globals().items() if isinstance(value, Decides))
-
-
 def scaled(constant: Decides, factor: float) -> Decides:
     """The same constant, times `factor`: each of several numbers, whole ones rounded."""
     told = (constant.unit, constant.reason, constant.data)
@@ -455,7 +450,7 @@ def changed(name: str, factor: float) -> Iterator[None]:
 
     What has read it before, a default argument say, keeps the old value.
     """
-    before = dict(table()).get(name)
+    before = dict(deciding(globals())).get(name)
     if before is None:
         remedy = "take a name of diagnosis/decisions.py"
         raise BadInput("constant", "diagnosis.decisions", name, "one that decides something", remedy)

@@ -12,7 +12,7 @@ from mkdocs.structure.files import File, Files
 import logcheck.thresholds
 import replay.thresholds
 from diagnosis import decisions
-from records.deciding import Decides
+from records.deciding import deciding
 from records.quality import CRITERIA
 from twinlaw.verbs import VERBS, build_parser
 
@@ -88,10 +88,10 @@ def decisions_page() -> str:
         ("Firmware replay", replay.thresholds),
         ("Diagnosis", decisions),
     ):
-        known = [(name, value) for name, value in vars(module).items() if isinstance(value, Decides)]
         parts += [f"## {heading}\n", "| constant | value | unit | reason | data that set it |", "|---|---|---|---|---|"]
         parts += [
-            f"| `{name}` | {_shown(value)} | {value.unit} | {value.reason} | {value.data} |" for name, value in known
+            f"| `{name}` | {_shown(value)} | {value.unit} | {value.reason} | {value.data} |"
+            for name, value in deciding(vars(module))
         ]
         parts.append("")
     parts += [

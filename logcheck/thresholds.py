@@ -1,8 +1,6 @@
 """Every constant that decides something in the check of a log: value, unit, reason, and the data that set it."""
 
-from collections.abc import Iterator
-
-from records.deciding import Count, Decides, Limit
+from records.deciding import Count, Limit
 
 # clock
 CALENDAR_S = Limit(1e6, "s", "eleven days: no run starts so late by its own clock")
@@ -238,8 +236,3 @@ COARSEST_S = Limit(
     "verdicts as those of them that were asked otherwise; of two names the twin came first, and one lag had 0.44, by all rows 0.65",
 )
 TIMES_SHOWN = Count(3, "times", "of what happened often are named, and the rest counted")
-
-
-def table() -> Iterator[tuple[str, Decides]]:
-    """Name and constant of each."""
-    return ((name, value) for name, value in globals().items() if isinstance(value, Decides))

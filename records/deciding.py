@@ -1,5 +1,7 @@
 """Constants that decide something, each with its unit, its reason, and the data that set it: numbers that can be asked why."""
 
+from collections.abc import Iterator, Mapping
+
 UNRECORDED = "none on record: reasoned when written"
 
 
@@ -64,3 +66,8 @@ class Counts(Decides, tuple[int, ...]):
 
     def __getnewargs__(self) -> tuple[tuple[int, ...], str, str, str]:
         return tuple(self), self.unit, self.reason, self.data
+
+
+def deciding(names: Mapping[str, object]) -> Iterator[tuple[str, Decides]]:
+    """Those of a module's names that decide something, in its order: `deciding(vars(module))`."""
+    return ((name, value) for name, value in names.items() if isinstance(value, Decides))

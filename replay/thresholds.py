@@ -1,8 +1,6 @@
 """Every constant that decides which cause a difference of firmware has: value, unit, reason, and the data that set it."""
 
-from collections.abc import Iterator
-
-from records.deciding import Count, Counts, Decides, Limit, Limits
+from records.deciding import Count, Counts, Limit, Limits
 
 # columns
 NEAR_SHARE = Limit(
@@ -89,8 +87,3 @@ LEAST_GRID_V = Limit(5e-5, "V", "a finer grid is the log's digits")
 FLOWN_IN_FIXED = Limit(
     0.5, "share of samples", "so many, and more than in float32, must agree for a log to count as flown in fixed point"
 )
-
-
-def table() -> Iterator[tuple[str, Decides]]:
-    """Name and constant of each."""
-    return ((name, value) for name, value in globals().items() if isinstance(value, Decides))

@@ -12,7 +12,7 @@ import pytest
 import diagnosis.decisions
 import logcheck.thresholds
 import replay.thresholds
-from records.deciding import Count, Decides, Limit, Limits
+from records.deciding import Count, Decides, Limit, Limits, deciding
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = (diagnosis.decisions, logcheck.thresholds, replay.thresholds)
@@ -23,7 +23,7 @@ def test_every_constant_has_unit_reason_and_data_and_a_user(module: ModuleType) 
     package, _, name = module.__name__.rpartition(".")
     code = "\n".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / package).rglob("*.py")))
     asked = set(re.findall(rf"\b{name}\.(\w+)", code))
-    rows = dict(module.table())
+    rows = dict(deciding(vars(module)))
     assert len(rows) > 30
     for key, constant in rows.items():
         assert constant.unit, key

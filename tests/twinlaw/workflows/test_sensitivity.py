@@ -11,6 +11,7 @@ import pytest
 
 from blind.scoring.changes import change
 from diagnosis import decisions
+from records.deciding import deciding
 from records.errors import BadInput
 from records.log import save_log
 from sim.loop import fly_law
@@ -46,7 +47,7 @@ def test_changes_are_counted_by_case_and_shares_by_the_cases_where_they_count(tm
 
 def test_all_constants_are_tried_but_those_that_cannot_be_another() -> None:
     trials, untried = trials_of((), (0.7, 1.4))
-    assert {trial.constant for trial in trials} | set(untried) == {name for name, _ in decisions.table()}
+    assert {trial.constant for trial in trials} | set(untried) == {name for name, _ in deciding(vars(decisions))}
     assert all("the same" in reason or name in read_at_load() for name, reason in untried.items())
     assert trials_of(("COSTLY_EFFECTS",), (1.01, 1.4))[0] == [Trial("COSTLY_EFFECTS", 1.4)]
     with pytest.raises(BadInput, match="write ALARM"):

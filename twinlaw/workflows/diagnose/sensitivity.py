@@ -14,7 +14,7 @@ from diagnosis.diagnose import diagnose
 from jobs.crew import Crew
 from jobs.job import Job
 from jobs.keep import Folders
-from records.deciding import Decides
+from records.deciding import Decides, deciding
 from records.diagnosis import diagnosis_text
 from records.errors import BadInput
 from twinlaw.workflows.diagnose.each import Answered, answers
@@ -43,7 +43,7 @@ class Trial:
     @property
     def value(self) -> Decides:
         """What the constant is then."""
-        return decisions.scaled(dict(decisions.table())[self.constant], self.factor)
+        return decisions.scaled(dict(deciding(vars(decisions)))[self.constant], self.factor)
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def tried(trials: Sequence[Trial], asked: Sequence[Question], cases: Path, out: 
 
 def trials_of(names: Sequence[str], factors: Sequence[float]) -> tuple[list[Trial], Mapping[str, str]]:
     """The trials of these constants, all for none, and why each of the others cannot be tried; raises BadInput for a name that is none."""
-    known, loaded = dict(decisions.table()), read_at_load()
+    known, loaded = dict(deciding(vars(decisions))), read_at_load()
     for name in names:
         if name not in known:
             like = get_close_matches(name.upper(), known, 1)
@@ -126,7 +126,7 @@ def read_at_load() -> set[str]:
         for entry in vars(content).values()
         for value in (entry, *_defaults(entry))
     }
-    return {name for name, constant in decisions.table() if id(constant) in kept}
+    return {name for name, constant in deciding(vars(decisions)) if id(constant) in kept}
 
 
 def _defaults(entry: object) -> Iterator[object]:
