@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Unpack
 
 from blind.effects import ce150_formulas as formulas
 from blind.effects.ce150_formulas import Formula, Start, Term
-from blind.effects.draws import Source
 from blind.effects.effect import Effect, Size
-from blind.effects.row import Judged, known, outside
+from blind.effects.row import Judged, Traits, known, outside
 
 # What the words in braces are for index 0 and 1.
 WORDS: tuple[Mapping[str, str], ...] = (
@@ -69,16 +69,10 @@ def in_table(
     name: str,
     size: Size,
     *indices: int,
-    bounds: tuple[float, float],
-    drawn: Mapping[str, Source] | None = None,
-    fixed: Mapping[str, float] | None = None,
-    signed: bool = False,
-    single: tuple[str, ...] = (),
     term: Term | None = None,
     start: Start | None = None,
     equivalent: Judged | None = None,
-    hides: str = "",
-    loses_frames: bool = False,
+    **traits: Unpack[Traits],
 ) -> Effect:
     """A rig's row of the contract's table: `name` as there, words in braces those of the first of `indices` (none: no pair).
 
@@ -86,25 +80,9 @@ def in_table(
     """
     entry = TABLE[name]
     words = WORDS[indices[0]] if indices else {}
-    return known(
-        name.format(**words),
-        entry.depends.format(**words),
-        size,
-        entry.formula,
-        *indices,
-        bounds=bounds,
-        term=term,
-        start=start,
-        equivalent=equivalent,
-        drawn=drawn,
-        fixed=fixed,
-        signed=signed,
-        single=single,
-        sensor=entry.sensor,
-        needs=entry.needs,
-        hides=hides,
-        loses_frames=loses_frames,
-    )
+    own: Traits = {**traits, "sensor": entry.sensor, "needs": entry.needs}
+    told = (name.format(**words), entry.depends.format(**words))
+    return known(*told, size, entry.formula, *indices, term=term, start=start, equivalent=equivalent, **own)
 
 
 def outside_table(
@@ -113,34 +91,14 @@ def outside_table(
     depends: str,
     size: Size,
     *indices: int,
-    drawn: Mapping[str, Source] | None = None,
-    fixed: Mapping[str, float] | None = None,
-    signed: bool = False,
-    bounds: tuple[float, float] = (0.01, 10.0),
     keywords: str = "",
     twins: str = "",
-    sensor: bool = False,
+    **traits: Unpack[Traits],
 ) -> Effect:
     """A rig's row of an effect that the contract's table does not hold; lists of words are one text, words in braces as in the table."""
     words = WORDS[indices[0]] if indices else {}
-
-    def told(text: str) -> str:
-        return text.format(**words)
-
-    return outside(
-        told(name),
-        told(places),
-        told(depends),
-        size,
-        *indices,
-        bounds=bounds,
-        drawn=drawn,
-        fixed=fixed,
-        signed=signed,
-        keywords=keywords,
-        twins=told(twins),
-        sensor=sensor,
-    )
+    told = (name.format(**words), places.format(**words), depends.format(**words))
+    return outside(*told, size, *indices, keywords=keywords, twins=twins.format(**words), **traits)
 
 
 def for_both(*rows: Callable[[int], tuple[Effect, ...]]) -> tuple[Effect, ...]:

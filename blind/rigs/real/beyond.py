@@ -1,9 +1,9 @@
 """What the real rigs may have beyond the contract's table, plant by plant; sizes go by what is usual on a plant."""
 
-from collections.abc import Mapping
+from typing import Unpack
 
 from blind.effects import row
-from blind.effects.draws import Source, Uniform
+from blind.effects.draws import Uniform
 from blind.effects.effect import Effect, Size
 from blind.rigs.real.plant import RealPlant
 
@@ -16,27 +16,14 @@ def outside(
     size: Size,
     i: int,
     keywords: str,
-    drawn: Mapping[str, Source] | None = None,
-    signed: bool = False,
-    sensor: bool = False,
-    twins: str = "",
     more: str = "",
+    twins: str = "",
+    **traits: Unpack[row.Traits],
 ) -> Effect:
     """An effect that the contract's table does not hold; `more`: further places that are right."""
     places = f"{name.partition('.')[0]} {more}"
-    return row.outside(
-        name,
-        places,
-        depends,
-        size,
-        i,
-        bounds=BOUNDS,
-        drawn=drawn,
-        signed=signed,
-        keywords=keywords,
-        twins=twins,
-        sensor=sensor,
-    )
+    own: row.Traits = {**traits, "bounds": BOUNDS}
+    return row.outside(name, places, depends, size, i, keywords=keywords, twins=twins, **own)
 
 
 def of_axis(p: RealPlant, i: int) -> tuple[Effect, ...]:
@@ -45,15 +32,15 @@ def of_axis(p: RealPlant, i: int) -> tuple[Effect, ...]:
     return (
         outside(
             f"{at}.cogging", f"torque({angle}) on {at}", Size("detent", 0.03 * torque), i, "detent cogging magnet cyclic periodic",
-            {"detent_waves": Uniform(5.0 / p.fine(i), 15.0 / p.fine(i)), "detent_rad": Uniform(-3.14, 3.14)},
+            drawn={"detent_waves": Uniform(5.0 / p.fine(i), 15.0 / p.fine(i)), "detent_rad": Uniform(-3.14, 3.14)},
         ),
         outside(
             f"{at}.hum", f"torque(t) on {at}", Size("hum", 0.03 * torque), i, "hum periodic vibration sine",
-            {"hum_rad_s": Uniform(2.0, 12.0)},
+            drawn={"hum_rad_s": Uniform(2.0, 12.0)},
         ),
         outside(
             f"{at}.bumper", f"torque({angle}) on {at}", Size("bumper", torque / reach), i, "stop bumper limit contact wall",
-            {"bumper_at": Uniform(0.25 * reach, 0.55 * reach)},
+            drawn={"bumper_at": Uniform(0.25 * reach, 0.55 * reach)},
         ),
         outside(f"{at}.drift", f"torque(t) on {at}", Size("drift", 0.003 * torque), i, "drift creep ramp thermal leak", signed=True),
         outside(
@@ -67,12 +54,12 @@ def of_drive(p: RealPlant, i: int) -> tuple[Effect, ...]:
     at, u, size = p.drives[i], p.inputs[i], p.input_V[i]
     rotor = p.rotors[i] if p.rotors else at
     stall = outside(
-        f"{rotor}.stall", f"thrust({u})", Size("stall", 0.3, most=0.9), i, "stall flow thrust", {"stall_from": Uniform(0.2, 0.5)},
+        f"{rotor}.stall", f"thrust({u})", Size("stall", 0.3, most=0.9), i, "stall flow thrust", drawn={"stall_from": Uniform(0.2, 0.5)},
         more=at, twins=f"{at}.saturation",
     )  # fmt: skip
     chip = outside(
         f"{rotor}.chipped_blade", f"gain(t) of {u}", Size("chip", 0.06, most=0.6), i, "chip damage gain_step break",
-        {"chip_time_s": Uniform(3.0, 9.0)}, more=at,
+        drawn={"chip_time_s": Uniform(3.0, 9.0)}, more=at,
     )  # fmt: skip
     weak = outside(
         f"{at}.weak_bridge",
@@ -85,7 +72,7 @@ def of_drive(p: RealPlant, i: int) -> tuple[Effect, ...]:
         outside(f"{at}.play", f"hysteresis of {u}", Size("play_V", 0.02 * size), i, "backlash play hysteresis memory"),
         outside(
             f"{at}.loose_contact", f"gain(t) of {u}", Size("dip", 0.15, most=1.0), i, "contact dropout intermittent dip loose",
-            {"dip_every_s": Uniform(0.7, 3.0), "dip_long_s": Uniform(0.06, 0.3), "dip_phase": Uniform(0.0, 1.0)}, more=rotor,
+            drawn={"dip_every_s": Uniform(0.7, 3.0), "dip_long_s": Uniform(0.06, 0.3), "dip_phase": Uniform(0.0, 1.0)}, more=rotor,
         ),
         *((chip,) if p.rotors else (weak,)),
         *((stall,) if p.blades else ()),
@@ -101,11 +88,11 @@ def of_sensor(p: RealPlant, i: int) -> tuple[Effect, ...]:
         ),
         outside(
             f"{at}.eccentric_disc", f"output({angle}) of {angle}", Size("cyclic", 0.01 * reach), i, "cyclic eccentric periodic",
-            {"cyclic_waves": Uniform(3.0 / reach, 10.0 / reach)}, sensor=True,
+            drawn={"cyclic_waves": Uniform(3.0 / reach, 10.0 / reach)}, sensor=True,
         ),
         outside(
             f"{at}.jump", f"output(t) of {angle}", Size("jump", 0.03 * reach), i, "count_slip jump slip",
-            {"jump_time_s": Uniform(3.0, 9.0)}, signed=True, sensor=True,
+            drawn={"jump_time_s": Uniform(3.0, 9.0)}, signed=True, sensor=True,
         ),
         outside(
             f"{at}.missed_lines", f"output({angle}) of {angle}", Size("missed", 0.1 / p.input_V[i]), i,
