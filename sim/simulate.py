@@ -1,12 +1,10 @@
 """Runs of a plant: with given inputs or with a controller in the loop, one or many side by side."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.bind import BoundPlant
-from sim.runs.compiled_run import CController, Drive, Noise, Runs, run_equations
+from sim.runs.compiled_run import CController, Conditions, Drive, Noise, Runs, run_equations
 from sim.runs.on_the_way import run_loop, run_open
 from sim.start import start_state
 
@@ -26,29 +24,21 @@ def simulate(
     noise: Noise | None = None,
     locked: tuple[str, ...] = (),
     keep: str = "uyx",
-    batched: bool | None = None,
 ) -> Runs:
     """Sample the plant at t_s (n,) from x0 (states,) or (runs, states) with parameters p, by default its own, (k,) or (runs, k).
 
     `drive` makes the inputs: an array (n, inputs), or (runs, n, inputs); the float64 law of a controller table; or compiled code. The
     last two need `reference` (n, outputs). Inputs are held from t_s[k] to t_s[k + 1]. `resolution` (outputs,) are the encoder steps,
-    by default the plant file's; 0 leaves an output as it is. `keep` names what to return, `batched` forces one of the two kernels.
+    by default the plant file's; 0 leaves an output as it is. `locked` names axes held mechanically, `keep` what to return.
     RK4 with `substeps` steps per sample; dry friction and stops by located events. Raises BadInput for shapes that do not fit.
 
     An x0 that lacks the states of added effects starts those at rest. Where effects act on the way of a signal, a loop is closed
     sample by sample in Python, single and without noise.
     """
     given = start_state(bound, x0)
-    options: dict[str, Any] = {
-        "p": p,
-        "resolution": resolution,
-        "substeps": substeps,
-        "noise": noise,
-        "locked": locked,
-        "keep": keep,
-    }
+    under = Conditions(reference, p, resolution, substeps, noise, locked, keep)
     if not bound.input_path and not bound.output_path:
-        return run_equations(bound, t_s, given, drive, reference=reference, batched=batched, **options)
+        return run_equations(bound, t_s, given, drive, under)
     if isinstance(drive, np.ndarray):
-        return run_open(bound, t_s, given, drive, **options)
-    return run_loop(bound, t_s, given, drive, reference=reference, **options)
+        return run_open(bound, t_s, given, drive, under)
+    return run_loop(bound, t_s, given, drive, under)

@@ -51,61 +51,72 @@ class CController:
 Drive = ControllerTable | CController | Array
 
 
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """Under what a run is made, beside its start and what drives it; each as `simulate` has it."""
+
+    reference: ArrayLike | None = None
+    p: ArrayLike | None = None
+    resolution: ArrayLike | None = None
+    substeps: int = 1
+    noise: Noise | None = None
+    locked: tuple[str, ...] = ()
+    keep: str = "uyx"
+
+
 def run_equations(
     bound: BoundPlant,
     t_s: ArrayLike,
     x0: ArrayLike,
     drive: Drive,
+    under: Conditions,
     *,
-    reference: ArrayLike | None = None,
-    p: ArrayLike | None = None,
-    resolution: ArrayLike | None = None,
-    substeps: int = 1,
-    noise: Noise | None = None,
-    locked: tuple[str, ...] = (),
-    keep: str = "uyx",
     batched: bool | None = None,
 ) -> Runs:
     """Sample the plant's equations; arguments and errors as for sim.simulate.simulate, but without what its signals pass on their way.
 
-    x0 must have all states, (states,) or (runs, states).
+    x0 must have all states, (states,) or (runs, states); `batched` forces one of the two kernels.
     """
-    compiled = kernel(bound.model)
-    p, x0 = np.asarray(bound.p if p is None else p, dtype=float), np.asarray(x0, dtype=float)
-    inputs = np.ascontiguousarray(drive, dtype=float) if isinstance(drive, np.ndarray) else None
-    per_run = inputs is not None and inputs.ndim == 3
-    single = p.ndim == 1 and x0.ndim == 1 and not per_run
-    counts = [
-        len(array)
-        for array, many in ((p, p.ndim == 2), (x0, x0.ndim == 2), (inputs, per_run))
-        if many and array is not None
-    ]
-    runs = max(counts, default=1)
-    model, times = bound.model, np.ascontiguousarray(t_s, dtype=float)
-    arrays: dict[str, NDArray[Any] | None] = {
-        "t_s": times,
-        "p": filled("p", p, (runs, len(bound.p))),
-        "x0": filled("x0", x0, (runs, len(model.states))),
-        "input": None
-        if inputs is None
-        else filled("u", inputs, (*((runs,) if per_run else ()), times.size, len(model.inputs))),
-        "reference": None if reference is None else filled("reference", reference, (times.size, len(model.outputs))),
-        "resolution": filled(
-            "resolution", bound.encoder_steps if resolution is None else resolution, (len(model.outputs),)
-        ),
-        "measurement_sd": _optional("measurement_sd", noise.measurement_sd if noise else None, len(model.outputs)),
-        "process_sd": _optional("process_sd", noise.process_sd if noise else None, len(model.states)),
-        "locked": np.array([axis.name in locked for axis in model.axes], dtype=np.uint8),
-    }
+    compiled, model, times = kernel(bound.model), bound.model, np.ascontiguousarray(t_s, dtype=float)
+    arrays, single = _given(bound, times, x0, drive, under)
+    assert arrays["p"] is not None
+    runs = len(arrays["p"])
     sizes = {"u": len(model.inputs), "y": len(model.outputs), "x": len(model.states)}
-    results = {name: np.empty((runs, times.size, sizes[name])) if name in keep else None for name in sizes}
+    results = {name: np.empty((runs, times.size, sizes[name])) if name in under.keep else None for name in sizes}
     request, kept = _request(compiled, arrays | results)
-    request.samples, request.runs, request.substeps, request.input_per_run = times.size, runs, substeps, per_run
-    request.seed = 0 if noise is None else noise.seed
-    kept.append(_drive(compiled, request, drive, reference is not None))
+    request.samples, request.runs, request.substeps = times.size, runs, under.substeps
+    request.input_per_run = arrays["input"] is not None and arrays["input"].ndim == 3
+    request.seed = 0 if under.noise is None else under.noise.seed
+    kept.append(_drive(compiled, request, drive, under.reference is not None))
     batch = (not single if batched is None else batched) and not isinstance(drive, CController)
     (compiled.batch.run_batch if batch else compiled.lib.run_single)(request)
     return Runs(times, **{name: array[0] if single and array is not None else array for name, array in results.items()})
+
+
+def _given(
+    bound: BoundPlant, times: Array, x0: ArrayLike, drive: Drive, under: Conditions
+) -> tuple[dict[str, NDArray[Any] | None], bool]:
+    """The arrays that a request points to, each with all its runs where these differ, and whether it is a single run without that axis."""
+    model, noise = bound.model, under.noise
+    p, start = np.asarray(bound.p if under.p is None else under.p, dtype=float), np.asarray(x0, dtype=float)
+    inputs = np.ascontiguousarray(drive, dtype=float) if isinstance(drive, np.ndarray) else None
+    several = [array for array, one in ((p, 1), (start, 1), (inputs, 2)) if array is not None and array.ndim == one + 1]
+    runs = max((len(array) for array in several), default=1)
+    per_run = (runs,) if inputs is not None and inputs.ndim == 3 else ()
+    inputs_shape, outputs = (*per_run, times.size, len(model.inputs)), len(model.outputs)
+    resolution = bound.encoder_steps if under.resolution is None else under.resolution
+    arrays: dict[str, NDArray[Any] | None] = {
+        "t_s": times,
+        "p": filled("p", p, (runs, len(bound.p))),
+        "x0": filled("x0", start, (runs, len(model.states))),
+        "input": _optional("u", inputs, inputs_shape),
+        "reference": _optional("reference", under.reference, (times.size, outputs)),
+        "resolution": filled("resolution", resolution, (outputs,)),
+        "measurement_sd": _optional("measurement_sd", noise.measurement_sd if noise else None, (outputs,)),
+        "process_sd": _optional("process_sd", noise.process_sd if noise else None, (len(model.states),)),
+        "locked": np.array([axis.name in under.locked for axis in model.axes], dtype=np.uint8),
+    }
+    return arrays, p.ndim == 1 and start.ndim == 1 and not per_run
 
 
 def filled(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -122,8 +133,8 @@ def filled(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
     return array
 
 
-def _optional(name: str, values: ArrayLike | None, size: int) -> Array | None:
-    return None if values is None else filled(name, values, (size,))
+def _optional(name: str, values: ArrayLike | None, shape: tuple[int, ...]) -> Array | None:
+    return None if values is None else filled(name, values, shape)
 
 
 def _request(compiled: Kernel, arrays: dict[str, NDArray[Any] | None]) -> tuple[Any, list[Any]]:

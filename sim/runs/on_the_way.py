@@ -12,7 +12,7 @@ from sim.kernel.kernel import kernel
 from sim.kernel.law import law_struct
 from sim.kernel.reading import reading
 from sim.paths.path import Held, Trace, in_steps, passed
-from sim.runs.compiled_run import Array, CController, Drive, Noise, Runs, filled, run_equations
+from sim.runs.compiled_run import Array, CController, Conditions, Drive, Runs, filled, run_equations
 from sim.runs.stepped import SteppedPlant
 
 
@@ -46,60 +46,50 @@ def readings(bound: BoundPlant, t_s: Array, x: Array, p: Array) -> Array:
     return y
 
 
-def run_open(bound: BoundPlant, t_s: ArrayLike, x0: Array, drive: Array, *, keep: str, **options: Any) -> Runs:
+def run_open(bound: BoundPlant, t_s: ArrayLike, x0: Array, drive: Array, under: Conditions) -> Runs:
     """A run with given inputs (n, inputs) or (runs, n, inputs); arguments and errors as for simulate, x0 with all states."""
     if drive.ndim == 3:
-        single = [_run_of(bound, t_s, x0, row, index, keep, options) for index, row in enumerate(drive)]
+        single = [_run_of(bound, t_s, x0, row, index, under) for index, row in enumerate(drive)]
         return Runs(single[0].t_s, *(_stacked([getattr(run, name) for run in single]) for name in "uyx"))
     times = np.ascontiguousarray(t_s, dtype=float)
     commands = filled("u", drive, (times.size, len(bound.model.inputs)))
     way = arriving(bound, times, commands)
-    resolution = options.pop("resolution")
-    steps = np.asarray(bound.encoder_steps if resolution is None else resolution, dtype=float)
+    keep, given = under.keep, under.resolution
+    steps = np.asarray(bound.encoder_steps if given is None else given, dtype=float)
     exact = np.zeros(steps.shape) if bound.output_path else steps
     wanted = "yx" if bound.output_path else keep.replace("u", "")
-    runs = run_equations(bound, way.t_s, x0, way.u, resolution=exact, keep=wanted, **options)
-    y = _measured(bound, way, runs, steps, options["p"]) if bound.output_path and "y" in keep else _rows(runs.y, way)
+    runs = run_equations(bound, way.t_s, x0, way.u, replace(under, resolution=exact, keep=wanted))
+    y = _measured(bound, way, runs, steps, under.p) if bound.output_path and "y" in keep else _rows(runs.y, way)
     shape = (*(runs.x if runs.x is not None else runs.y).shape[:-2], *commands.shape)  # type: ignore[union-attr]
     u = np.broadcast_to(commands, shape).copy() if "u" in keep else None
     return Runs(times, u, y, _rows(runs.x, way) if "x" in keep else None)
 
 
-def run_loop(
-    bound: BoundPlant,
-    t_s: ArrayLike,
-    x0: Array,
-    drive: Drive,
-    *,
-    reference: ArrayLike | None,
-    p: ArrayLike | None,
-    resolution: ArrayLike | None,
-    noise: Noise | None,
-    substeps: int,
-    locked: tuple[str, ...],
-    keep: str,
-) -> Runs:
+def run_loop(bound: BoundPlant, t_s: ArrayLike, x0: Array, drive: Drive, under: Conditions) -> Runs:
     """A run with the loop closed sample by sample; arguments as for simulate, x0 (states,) with all states.
 
     Raises BadInput for several runs, for noise, and without a reference.
     """
-    p = np.asarray(bound.p if p is None else p, dtype=float)
-    if noise is not None or p.ndim != 1 or x0.ndim != 1:
+    p = np.asarray(bound.p if under.p is None else under.p, dtype=float)
+    if under.noise is not None or p.ndim != 1 or x0.ndim != 1:
         effects = ", ".join(bound.effects)
         raise BadInput("closed loop", effects, "noise or several runs", "one run without noise", "run them one by one")
-    if reference is None:
+    if under.reference is None:
         raise BadInput("reference", "simulation", "nothing", "references for the controller", "give reference=")
     times, model = np.ascontiguousarray(t_s, dtype=float), bound.model
-    references = filled("reference", reference, (times.size, len(model.outputs)))
-    plant = SteppedPlant(replace(bound, p=p), x0, float(times[0]), resolution=resolution, locked=locked)
+    references = filled("reference", under.reference, (times.size, len(model.outputs)))
+    own, first_s = replace(bound, p=p), float(times[0])
+    plant = SteppedPlant(own, x0, first_s, resolution=under.resolution, locked=under.locked)
     control = _controller(bound, drive, plant.measured())
     u, y, x = (np.empty((times.size, len(kind))) for kind in (model.inputs, model.outputs, model.states))
     for k in range(times.size):
         x[k], y[k] = plant.x, plant.measured()
         u[k] = control(references[k], y[k])
         if k + 1 < times.size:
-            plant.advance(u[k].tolist(), float(times[k + 1]), substeps)
-    return Runs(times, **{name: array if name in keep else None for name, array in (("u", u), ("y", y), ("x", x))})
+            plant.advance(u[k].tolist(), float(times[k + 1]), under.substeps)
+    return Runs(
+        times, **{name: array if name in under.keep else None for name, array in (("u", u), ("y", y), ("x", x))}
+    )
 
 
 def _controller(bound: BoundPlant, drive: Drive, y0: tuple[float, ...]) -> Any:
@@ -145,14 +135,12 @@ def _measured(bound: BoundPlant, way: Arriving, runs: Runs, steps: Array, p: Arr
     return in_steps(result, steps).reshape(*runs.y.shape[:-2], *result.shape[-2:])
 
 
-def _run_of(
-    bound: BoundPlant, t_s: ArrayLike, x0: Array, row: Array, index: int, keep: str, options: dict[str, Any]
-) -> Runs:
+def _run_of(bound: BoundPlant, t_s: ArrayLike, x0: Array, row: Array, index: int, under: Conditions) -> Runs:
     """Run number `index` of a batch with inputs of its own."""
-    p = options["p"]
+    p = under.p
     own = p if p is None or np.ndim(p) == 1 else np.asarray(p)[index]
     start = x0 if x0.ndim == 1 else x0[index]
-    return run_open(bound, t_s, start, row, keep=keep, **{**options, "p": own})
+    return run_open(bound, t_s, start, row, replace(under, p=own))
 
 
 def _stacked(arrays: list[Array | None]) -> Array | None:

@@ -14,6 +14,7 @@ from sim.kernel.generate import model_header
 from sim.kernel.reference import reference
 from sim.manoeuvres import flight, hop
 from sim.model import TIME, Axis
+from sim.runs.compiled_run import Conditions, run_equations
 from sim.simulate import CController, Noise, simulate
 from tests.soak import sampled
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
@@ -122,8 +123,8 @@ def test_batched_and_single_closed_loops_are_the_same_bits(bound, table, substep
     p = bound.p + bound.sd * random.normal(size=(21, bound.p.size))
     noise = Noise(7, measurement_sd=[1e-4, 1e-4], process_sd=[0.5, 0, 1e-3, 0.5, 0, 1e-3])
     x0 = manoeuvre.x0 + [0, 1, 0, 0, 1, 0] * random.normal(size=(21, 1)) * 0.02
-    options = {"reference": manoeuvre.reference_rad, "p": p, "noise": noise, "substeps": substeps}
-    one, many = (simulate(bound, manoeuvre.t_s, x0, table, batched=batched, **options) for batched in (False, True))
+    under = Conditions(reference=manoeuvre.reference_rad, p=p, noise=noise, substeps=substeps)
+    one, many = (run_equations(bound, manoeuvre.t_s, x0, table, under, batched=batched) for batched in (False, True))
     for name in "uyx":
         assert np.array_equal(getattr(one, name), getattr(many, name))
     assert np.all(np.isfinite(many.x))
