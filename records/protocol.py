@@ -25,6 +25,49 @@ _HEAD = (
     Field("state", U8, "state", "state of the supervisor"),
 )
 _LAW_CYCLES = Field("law_cycles", U32, "core cycles", "duration of the last step of the law")
+_TICK = Field("tick", U32, "1", "control ticks since the start")
+_MISMATCHES = Field("mismatches", U32, "1", "outputs that differ from the expected bits")
+_IDENTITY = (
+    Field("schema_hash", U8, "1", "hash of this protocol's declaration", count=8),
+    Field("table_digest", U8, "1", "SHA-256 of the controller table", count=32),
+    Field("arithmetic", U8, "arithmetic", "arithmetic of the law"),
+    Field("sample_period_us", U32, "us", "control period"),
+    Field("pwm_full_scale_ticks", U16, "PWM ticks", "duty of full voltage"),
+    Field("firmware_version", U16, "1", "version of the firmware: major * 256 + minor"),
+    Field("unique_id", U8, "1", "serial number of the chip", count=12),
+    Field("reset_cause", U8, "reset_cause", "why the board started"),
+)
+_RESULT = (
+    Field("command", U8, "message type", "the command that this answers"),
+    Field("reason", U8, "reason", "outcome"),
+)
+_TELEMETRY_COUNTS = (
+    _count("frames_refused", "frames that reached the board and were not accepted"),
+    _count("frames_lost", "gaps in the host's sequence numbers"),
+    _count("tick_overruns", "ticks that came before the step of the last had finished"),
+)
+_COUNTERS = (
+    _count("frames_accepted", "frames accepted"),
+    _count("cobs_errors", "frames that are no COBS block"),
+    _count("too_long", "frames longer than any message"),
+    _count("too_short", "frames shorter than header and CRC"),
+    _count("crc_errors", "frames with a wrong CRC"),
+    _count("wrong_version", "frames of another protocol version"),
+    _count("unknown_type", "frames of a type that the board does not take"),
+    _count("wrong_length", "frames whose length is not that of their type"),
+    _count("stale", "frames older than the last accepted one"),
+    _count("repeated", "accepted frames that repeat the last one"),
+    _count("frames_lost", "gaps in the host's sequence numbers"),
+    _count("uart_overruns", "bytes lost in the USART"),
+    _count("uart_framing_errors", "bytes without a stop bit"),
+    _count("uart_noise_errors", "bytes with noise"),
+    _count("rx_ring_overflows", "bytes lost for want of room in the receive ring"),
+    _count("tx_frames_dropped", "frames not sent for want of room in the transmit ring"),
+    _count("tick_overruns", "ticks that came before the step of the last had finished"),
+    _count("host_losses", "times that the host was lost while armed"),
+    _count("encoder_faults", "times that an encoder was not believed while flying"),
+    _count("resets", "resets since power on"),
+)
 
 _ENUMERATIONS = (
     Enumeration(
@@ -187,92 +230,23 @@ def _to_board(fields: _LoopFields) -> tuple[Message, ...]:
     )
 
 
+def _answer(name: str, code: int, meaning: str, *fields: Field) -> Message:
+    return Message(name, code, False, meaning, (*_HEAD, *fields))
+
+
 def _from_board(fields: _LoopFields) -> tuple[Message, ...]:
+    seen = (*fields.counts, *fields.angles, *fields.references, *fields.inputs, *fields.duties)
+    outcome = "Outcome of a command, or the reason why a setpoint was not taken."
+    every = "Answer to GET_COUNTERS: every frame that was delimited on the line is in exactly one of the first nine."
     return (
-        Message(
-            "IDENTITY",
-            0x81,
-            False,
-            "Answer to IDENTIFY.",
-            (
-                *_HEAD,
-                Field("schema_hash", U8, "1", "hash of this protocol's declaration", count=8),
-                Field("table_digest", U8, "1", "SHA-256 of the controller table", count=32),
-                Field("arithmetic", U8, "arithmetic", "arithmetic of the law"),
-                Field("sample_period_us", U32, "us", "control period"),
-                Field("pwm_full_scale_ticks", U16, "PWM ticks", "duty of full voltage"),
-                Field("firmware_version", U16, "1", "version of the firmware: major * 256 + minor"),
-                Field("unique_id", U8, "1", "serial number of the chip", count=12),
-                Field("reset_cause", U8, "reset_cause", "why the board started"),
-            ),
+        _answer("IDENTITY", 0x81, "Answer to IDENTIFY.", *_IDENTITY),
+        _answer("RESULT", 0x82, outcome, *_RESULT),
+        _answer("ANSWER", 0x83, "Answer to SAMPLE.", *fields.inputs, *fields.duties, _LAW_CYCLES),
+        _answer(
+            "TELEMETRY", 0x84, "Sent each tick while flying or ramping.", _TICK, *seen, _LAW_CYCLES, *_TELEMETRY_COUNTS
         ),
-        Message(
-            "RESULT",
-            0x82,
-            False,
-            "Outcome of a command, or the reason why a setpoint was not taken.",
-            (
-                *_HEAD,
-                Field("command", U8, "message type", "the command that this answers"),
-                Field("reason", U8, "reason", "outcome"),
-            ),
-        ),
-        Message("ANSWER", 0x83, False, "Answer to SAMPLE.", (*_HEAD, *fields.inputs, *fields.duties, _LAW_CYCLES)),
-        Message(
-            "TELEMETRY",
-            0x84,
-            False,
-            "Sent each tick while flying or ramping.",
-            (
-                *_HEAD,
-                Field("tick", U32, "1", "control ticks since the start"),
-                *fields.counts,
-                *fields.angles,
-                *fields.references,
-                *fields.inputs,
-                *fields.duties,
-                _LAW_CYCLES,
-                _count("frames_refused", "frames that reached the board and were not accepted"),
-                _count("frames_lost", "gaps in the host's sequence numbers"),
-                _count("tick_overruns", "ticks that came before the step of the last had finished"),
-            ),
-        ),
-        Message(
-            "COUNTERS",
-            0x85,
-            False,
-            "Answer to GET_COUNTERS: every frame that was delimited on the line is in exactly one of the first nine.",
-            (
-                *_HEAD,
-                _count("frames_accepted", "frames accepted"),
-                _count("cobs_errors", "frames that are no COBS block"),
-                _count("too_long", "frames longer than any message"),
-                _count("too_short", "frames shorter than header and CRC"),
-                _count("crc_errors", "frames with a wrong CRC"),
-                _count("wrong_version", "frames of another protocol version"),
-                _count("unknown_type", "frames of a type that the board does not take"),
-                _count("wrong_length", "frames whose length is not that of their type"),
-                _count("stale", "frames older than the last accepted one"),
-                _count("repeated", "accepted frames that repeat the last one"),
-                _count("frames_lost", "gaps in the host's sequence numbers"),
-                _count("uart_overruns", "bytes lost in the USART"),
-                _count("uart_framing_errors", "bytes without a stop bit"),
-                _count("uart_noise_errors", "bytes with noise"),
-                _count("rx_ring_overflows", "bytes lost for want of room in the receive ring"),
-                _count("tx_frames_dropped", "frames not sent for want of room in the transmit ring"),
-                _count("tick_overruns", "ticks that came before the step of the last had finished"),
-                _count("host_losses", "times that the host was lost while armed"),
-                _count("encoder_faults", "times that an encoder was not believed while flying"),
-                _count("resets", "resets since power on"),
-            ),
-        ),
-        Message(
-            "SELF_TEST_RESULT",
-            0x86,
-            False,
-            "Answer to SELF_TEST.",
-            (*_HEAD, Field("mismatches", U32, "1", "outputs that differ from the expected bits")),
-        ),
+        _answer("COUNTERS", 0x85, every, *_COUNTERS),
+        _answer("SELF_TEST_RESULT", 0x86, "Answer to SELF_TEST.", _MISMATCHES),
     )
 
 
