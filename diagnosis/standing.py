@@ -14,7 +14,7 @@ from diagnosis.search.beam import Search
 from diagnosis.search.draughts import gust_shares
 from diagnosis.search.retune import Retune
 from diagnosis.seeing import false_alarm
-from diagnosis.validate.fitted_logs import FittedLogs, readings_of
+from diagnosis.validate.fitted_logs import FittedLogs
 from records.reasons import Decision, Note
 
 
@@ -77,7 +77,7 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, Exit | None]:
     beyond = seen.detection.moved and furthest > decisions.BEYOND_CHANCE
     if beyond or (ahead_nats is None and not small):
         return seen, None
-    worth = float(decisions.MATTERS) * readings_of(seen.case)
+    worth = float(decisions.MATTERS) * FittedLogs(seen.case).readings
     surely = max(worth, -float(np.log(decisions.ALARM))) if small else worth
     told, rule = _consequence("matters", named(judged.weighed), ahead_nats or 0.0, worth, surely, "nats")
     seen = seen.because(rule)

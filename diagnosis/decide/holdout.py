@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decisions import held_against
@@ -13,10 +12,9 @@ from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, nominal_hypothesis
-from diagnosis.validate.fitted_logs import readings_of
-from diagnosis.validate.prediction import predictions
-from diagnosis.validate.score import Errors, Score, errors_of, score
+from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.validate.judged_logs import JudgedLogs
+from diagnosis.validate.score import Errors, Score, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from jobs.thread_map import thread_map
 from records.diagnosis import Shrinkage
@@ -24,7 +22,6 @@ from records.reasons import Decision, Note
 from records.table import ControllerTable
 
 NATS = "nats a reading"
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,21 +29,29 @@ class Holdout:
     """Logs that were not fitted, their names, the controller that flew each, None where it is not at hand, and the plant without effects
     that they are judged against: `base`, re-tuned within its spread, or as stated where that predicts better, as `notes` then tell."""
 
-    case: Case
+    logs: JudgedLogs
     names: Sequence[str]
     tables: Sequence[ControllerTable | None]
     base: FittedHypothesis
     notes: tuple[Note, ...] = ()
     decisions: tuple[Decision, ...] = ()
-    read: dict[Hypothesis, list[Array]] = field(default_factory=dict)
-    judged: dict[Hypothesis, Errors] = field(default_factory=dict)
     ways: dict[Hypothesis, Hypothesis] = field(default_factory=dict)
+
+    @property
+    def case(self) -> Case:
+        """Of the logs."""
+        return self.logs.case
+
+    @property
+    def readings(self) -> int:
+        """See JudgedLogs."""
+        return self.logs.readings
 
     def predicted(self, chosen: FittedHypothesis) -> tuple[Predicted, ...]:
         """Predictions by the plant as stated, by `base`, and with what was `chosen`."""
         own = self.foreseen(chosen.fit.hypothesis)
         variants = {"nominal": self.stated, "before": self.base.fit.hypothesis, "after": own}
-        return predict_all(self.case, self.names, variants, self._read)
+        return predict_all(self.case, self.names, variants, self.logs.predictions)
 
     @cached_property
     def stated(self) -> Hypothesis:
@@ -58,14 +63,12 @@ class Holdout:
         """What a hypothesis says of these logs: an event that happened in another log counts only where it surely predicts these better,
         and noise, which is not judged, is its own or that of `base`, whichever predicts better."""
         if hypothesis not in self.ways:
-            usual, eventful = self._better_noise(self._without_events(hypothesis)), self._better_noise(hypothesis)
-            again = is_surely_better(score(self._errors(eventful), self._errors(usual)))
+            other = self.base.fit.hypothesis
+            usual = self.logs.under_better_noise(self._without_events(hypothesis), other)
+            eventful = self.logs.under_better_noise(hypothesis, other)
+            again = is_surely_better(score(self.logs.errors(eventful), self.logs.errors(usual)))
             self.ways[hypothesis] = eventful if again else usual
         return self.ways[hypothesis]
-
-    def _better_noise(self, hypothesis: Hypothesis) -> Hypothesis:
-        noisy = as_noisy(self.case, hypothesis, self.base.fit.hypothesis)
-        return noisy if score(self._errors(noisy), self._errors(hypothesis)).gain > 0.0 else hypothesis
 
     def _without_events(self, hypothesis: Hypothesis) -> Hypothesis:
         effects = self.case.library.effects
@@ -74,27 +77,22 @@ class Holdout:
 
     def errors_foreseen(self, hypothesis: Hypothesis) -> Errors:
         """The errors of what a hypothesis says of these logs."""
-        return self._errors(self.foreseen(hypothesis))
-
-    @property
-    def readings(self) -> int:
-        """See `readings_of`."""
-        return readings_of(self.case)
+        return self.logs.errors(self.foreseen(hypothesis))
 
     def score(self, hypothesis: Hypothesis) -> Score:
         """By how much a hypothesis predicts these logs better than `base`; by nothing where all that it names happened in other logs."""
         if self._named(hypothesis) and not self._named(self.foreseen(hypothesis)):
             return Score(0.0, 0.0, 0.0)
-        return score(self.errors_foreseen(hypothesis), self._errors(self.base.fit.hypothesis))
+        return score(self.errors_foreseen(hypothesis), self.logs.errors(self.base.fit.hypothesis))
 
     def score_of_plant(self, chosen: FittedHypothesis) -> Score:
         """The same of the plant that is left for these logs, whatever is named: its parameters count too. Parameters alone are held against
         those that are stated, as `base` has moved its own."""
-        return score(self.errors_foreseen(chosen.fit.hypothesis), self._errors(self._rival(chosen)))
+        return score(self.errors_foreseen(chosen.fit.hypothesis), self.logs.errors(self._rival(chosen)))
 
     def score_of_longest(self, chosen: FittedHypothesis) -> Score:
         """The same of predictions over the longest horizon alone."""
-        own, other = self.errors_foreseen(chosen.fit.hypothesis), self._errors(self._rival(chosen))
+        own, other = self.errors_foreseen(chosen.fit.hypothesis), self.logs.errors(self._rival(chosen))
         return score(own.of_longest(), other.of_longest())
 
     def _rival(self, chosen: FittedHypothesis) -> Hypothesis:
@@ -112,16 +110,6 @@ class Holdout:
         """How far the gap shrinks in these predictions."""
         return shrinkage(self.case, predicted, self.tables)
 
-    def _read(self, hypothesis: Hypothesis) -> list[Array]:
-        if hypothesis not in self.read:
-            self.read[hypothesis] = [predictions(self.case, flight, hypothesis) for flight in self.case.flights]
-        return self.read[hypothesis]
-
-    def _errors(self, hypothesis: Hypothesis) -> Errors:
-        if hypothesis not in self.judged:
-            self.judged[hypothesis] = errors_of(self.case, hypothesis, self._read)
-        return self.judged[hypothesis]
-
 
 def holdout_of(
     case: Case,
@@ -131,7 +119,7 @@ def holdout_of(
     retuned: FittedHypothesis,
 ) -> Holdout:
     """The logs of `case` with what judges them; `retuned` is the plant as the `training` logs have it."""
-    trial = Holdout(case, names, tables, retuned)
+    trial = Holdout(JudgedLogs(case), names, tables, retuned)
     told = trial.score(trial.stated)
     better = is_surely_better(told)
     rule = held_against(
@@ -142,7 +130,7 @@ def holdout_of(
         return replace(trial, decisions=(rule,))
     notes = (Note("stated_predicts_better", "plant", {"worse": float(np.expm1(told.gain / _outputs(case)))}),)
     base = FittedHypothesis((), found, evidence(found, training.library.effects))
-    return Holdout(case, names, tables, base, notes, (rule,), trial.read, trial.judged)
+    return replace(trial, base=base, notes=notes, decisions=(rule,), ways={})
 
 
 def _outputs(case: Case) -> int:

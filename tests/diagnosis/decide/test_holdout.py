@@ -20,7 +20,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Exit, Judged, Result, Seen
 from diagnosis.standing import may_be_missing, of_consequence
-from diagnosis.validate.fitted_logs import readings_of
+from diagnosis.validate.judged_logs import JudgedLogs
 from diagnosis.validate.score import HORIZONS_S, Errors, Score
 from records.log import RunLog
 from sim.added_effects import library
@@ -87,7 +87,7 @@ def judged(log: RunLog) -> tuple[Case, Holdout]:
     """A log with the arm as stated as what it is judged against."""
     case = arm_case(log)
     base = nominal_fit(arm_case(arm_log(seed=31)))
-    return case, Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
+    return case, Holdout(JudgedLogs(case), ["hold"], [None], FittedHypothesis((), base, 0.0))
 
 
 def supposing(effects: dict[str, dict[str, float]]) -> FittedHypothesis:
@@ -126,7 +126,7 @@ def test_parameters_alone_are_held_against_those_that_are_stated() -> None:
     longer = 1.2 * np.asarray(arm().plant.parameters["l"].value).item()
     case, checked = (arm_case(arm_log(seed=seed, l=longer)) for seed in (31, 33))
     moved = FittedHypothesis((), nominal_fit(case), 0.0)
-    holdout = Holdout(checked, ["hold"], [None], moved)
+    holdout = Holdout(JudgedLogs(checked), ["hold"], [None], moved)
     told, notes, rules = asked(holdout, moved)
     assert holdout.score(moved.fit.hypothesis).gain == 0.0
     assert told.gain > decisions.SURELY * told.sd
@@ -204,7 +204,7 @@ def test_what_predicts_a_second_surely_worse_is_not_added_however_well_it_predic
     after[:, -1] = last
     nothing = np.zeros_like(before)
     holdout.ways.update({hypothesis: hypothesis})
-    holdout.judged.update(
+    holdout.logs.judged.update(
         {
             hypothesis: Errors(after, np.zeros(1), nothing),
             holdout.base.fit.hypothesis: Errors(before, np.zeros(1), nothing),
@@ -297,5 +297,5 @@ def test_what_logs_held_out_say_counts_beside_what_the_fitted_ones_do() -> None:
     both = FittedHypothesis(("arm.coulomb", "arm.offset_force"), wrong, 120.0)
     holdout = holdout_of(other, ["hold"], [None], case, plain)
     ahead = with_held_out({alone: 20.0, both: 25.0}, holdout)
-    assert ahead[alone] == pytest.approx(20.0 + readings_of(other) * holdout.score(right.hypothesis).gain)
+    assert ahead[alone] == pytest.approx(20.0 + holdout.readings * holdout.score(right.hypothesis).gain)
     assert ahead[alone] > 20.0 > ahead[both] - ahead[alone] + 20.0
