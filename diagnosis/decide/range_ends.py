@@ -45,6 +45,16 @@ class RangeEnd:
 
 
 @dataclass(frozen=True)
+class _Extreme:
+    """The greatest or least reading of an output, and how others would go on from it."""
+
+    place: int
+    column: str
+    level: float
+    how: str
+
+
+@dataclass(frozen=True)
 class _Stand:
     log: int
     first: int
@@ -57,23 +67,14 @@ def range_ends(
     """The ends of ranges at which an output of the logs stood, as the plant without added effects foretells, by so many nats as RANGE_ENDS
     asks for."""
     bound = without_effects(bound)
-    library, stops = effect_library(bound), plant_facts(bound).stops
-    for place, column in enumerate(bound.model.outputs):
-        read = [log.column(column)[np.isfinite(log.column(column))] for log in logs]
-        every = np.concatenate(read) if read else np.zeros(0)
-        if not every.size or every.min() == every.max():
-            continue
-        low, high = stops.get(column, (-np.inf, np.inf))
-        for level, how in ((float(every.max()), "exceeds"), (float(every.min()), "falls below")):
-            if not low + thresholds.BEYOND_STOP_rad < level < high - thresholds.BEYOND_STOP_rad:
-                continue
-            for stand in _longest(logs, column, level):
-                misled = _misled(library, bound, logs[stand.log], used[stand.log], place, stand)
-                if misled > decisions.RANGE_ENDS:
-                    yield RangeEnd(
-                        place, level, _note(column, level, how, logs[stand.log], names[stand.log], stand, misled)
-                    )
-                    break
+    library = effect_library(bound)
+    for extreme in _extremes(bound, logs):
+        stands = _longest(logs, extreme)
+        foretold = ((at, _misled(library, bound, logs[at.log], used[at.log], extreme.place, at)) for at in stands)
+        found = next(((stand, nats) for stand, nats in foretold if nats > decisions.RANGE_ENDS), None)
+        if found is not None:
+            where = found[0].log
+            yield RangeEnd(extreme.place, extreme.level, _note(extreme, logs[where], names[where], *found))
 
 
 def within_ranges(log: RunLog, ends: Sequence[RangeEnd]) -> RunLog:
@@ -84,15 +85,28 @@ def within_ranges(log: RunLog, ends: Sequence[RangeEnd]) -> RunLog:
     return replace(log, y=y) if ends else log
 
 
-def _longest(logs: Sequence[RunLog], column: str, level: float) -> list[_Stand]:
-    """The longest stands at a level to which the output comes from afar, and from which it goes as far."""
+def _extremes(bound: BoundPlant, logs: Sequence[RunLog]) -> Iterator[_Extreme]:
+    """Both of each output that moves, but one beside a stop of its axis: there it ends its way."""
+    stops = plant_facts(bound).stops
+    for place, column in enumerate(bound.model.outputs):
+        read = [log.column(column)[np.isfinite(log.column(column))] for log in logs]
+        every = np.concatenate(read) if read else np.zeros(0)
+        if not every.size or every.min() == every.max():
+            continue
+        low, high = stops.get(column, (-np.inf, np.inf))
+        for level, how in ((float(every.max()), "exceeds"), (float(every.min()), "falls below")):
+            if low + thresholds.BEYOND_STOP_rad < level < high - thresholds.BEYOND_STOP_rad:
+                yield _Extreme(place, column, level, how)
+
+
+def _longest(logs: Sequence[RunLog], extreme: _Extreme) -> list[_Stand]:
+    """The longest stands at an extreme to which the output comes from afar, and from which it goes as far."""
+    columns = [log.column(extreme.column) for log in logs]
     found = [
         _Stand(number, first, last)
-        for number, log in enumerate(logs)
-        for first, last in runs(log.column(column))
-        if log.column(column)[first] == level
-        and last - first + 1 >= LEAST_STAND_ROWS
-        and _is_far(log.column(column), first, last)
+        for number, values in enumerate(columns)
+        for first, last in runs(values)
+        if values[first] == extreme.level and last - first + 1 >= LEAST_STAND_ROWS and _is_far(values, first, last)
     ]
     return sorted(found, key=lambda stand: stand.first - stand.last)[: decisions.ASKED]
 
@@ -129,15 +143,17 @@ def _misled(
     return behind[0] - behind[1]
 
 
-def _note(column: str, level: float, how: str, log: RunLog, name: str, stand: _Stand, misled: float) -> Note:
+def _note(extreme: _Extreme, log: RunLog, name: str, stand: _Stand, misled: float) -> Note:
+    column = extreme.column
     numbers = {
-        "level": level,
+        "level": extreme.level,
         "start_s": float(log.t_s[stand.first]),
         "end_s": float(log.t_s[stand.last]),
         "nats": misled,
     }
+    level = f"{extreme.level:.5g} {unit_of(column) or ''}"
     said = (
-        f"{name}: {column} never {how} {level:.5g} {unit_of(column) or ''}, where it stands from {numbers['start_s']:.6g} s to "
+        f"{name}: {column} never {extreme.how} {level}, where it stands from {numbers['start_s']:.6g} s to "
         f"{numbers['end_s']:.6g} s: without these readings the plant foretells what follows {misled:.0f} nats better: the sensor's range "
         "ends there; left out"
     )
