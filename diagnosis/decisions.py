@@ -377,6 +377,11 @@ RANGE_ENDS = Limit(
     "stands at extremes in 128 sealed cases, most of them with effects: 20 at most; five logs of an arm and a CE150 that were cut off 40 "
     "and more",
 )
+RANGE_BEFORE_ROWS = Count(
+    400, "rows", "before a stand, by which the plant's state and numbers are known: time", "the same logs"
+)
+RANGE_BEHIND_ROWS = Count(30, "rows", "behind a stand, in which what an axis did unseen still shows", "the same logs")
+RANGE_STAND_ROWS = Count(16, "rows", "of a stand at least: in fewer no axis goes far unseen", "the same logs")
 CLOCK_SD = Limit(
     0.03,
     "share",
@@ -396,7 +401,16 @@ CLOCK_TOLD = Limit(
     "98 where an effect promises 512",
 )
 
-# What the improved plant does in a closed loop (validate)
+# How it predicts, and what the improved plant does in a closed loop (validate)
+SETTLE_S = Limit(
+    2.0, "s", "of a log from which nothing is predicted: until then the filter cannot tell the speeds well enough"
+)
+SHORT_ROWS = Count(
+    300,
+    "rows",
+    "and more of a log too short for that and a window: both shrink with it; so many they hold at 100 Hz, at which helicopter and arms are "
+    "logged",
+)
 ASTRAY_S = Limit(1.0, "s", "so long in all a flight may be further from the log than the log's own range")
 
 # What to record next (experiment)

@@ -28,9 +28,6 @@ from records.text.units import unit_of
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
-BEFORE_ROWS = 400  # to know the plant's state and numbers by
-BEHIND_ROWS = 30  # in which what an axis did unseen still shows
-LEAST_STAND_ROWS = 16  # of a stand: in fewer nothing goes far
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
@@ -106,7 +103,9 @@ def _longest(logs: Sequence[RunLog], extreme: _Extreme) -> list[_Stand]:
         _Stand(number, first, last)
         for number, values in enumerate(columns)
         for first, last in runs(values)
-        if values[first] == extreme.level and last - first + 1 >= LEAST_STAND_ROWS and _is_far(values, first, last)
+        if values[first] == extreme.level
+        and last - first + 1 >= decisions.RANGE_STAND_ROWS
+        and _is_far(values, first, last)
     ]
     return sorted(found, key=lambda stand: stand.first - stand.last)[: decisions.ASKED]
 
@@ -116,7 +115,10 @@ def _is_far(values: Array, first: int, last: int) -> bool:
     its plant file states, a step by itself is what no reading foretells."""
     moves = np.abs(np.diff(values))
     far = thresholds.CUT_OFF_STEPS * float(np.min(moves, initial=np.inf, where=moves > 0.0))
-    sides = values[max(0, first - BEHIND_ROWS) : first], values[last + 1 : last + 1 + BEHIND_ROWS]
+    sides = (
+        values[max(0, first - decisions.RANGE_BEHIND_ROWS) : first],
+        values[last + 1 : last + 1 + decisions.RANGE_BEHIND_ROWS],
+    )
     return all(np.max(np.abs(side - values[first]), initial=0.0, where=np.isfinite(side)) >= far for side in sides)
 
 
@@ -124,7 +126,7 @@ def _misled(
     library: EffectLibrary, bound: BoundPlant, log: RunLog, used: Rows | None, place: int, stand: _Stand
 ) -> float:
     """By how many nats the rows behind a stand are less likely after all was read than after all but what is at its level."""
-    rows = np.arange(max(0, stand.first - BEFORE_ROWS), stand.last + 1 + BEHIND_ROWS)
+    rows = np.arange(max(0, stand.first - decisions.RANGE_BEFORE_ROWS), stand.last + 1 + decisions.RANGE_BEHIND_ROWS)
     near = part(log, slice(int(rows[0]), int(rows[-1]) + 1))
     before, at_end = rows <= stand.last, log.y[rows, place] == log.y[stand.first, place]
     kept = (np.ones(len(rows), bool) if used is None else used[rows]) & (before | ~at_end)

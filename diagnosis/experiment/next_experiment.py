@@ -24,7 +24,7 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
-LONGEST_PERIOD_S = 0.02
+LONGEST_PERIOD_S = 0.02  # between rows of a simulated experiment: no verdict hangs on it
 NO_EXPERIMENT = "none of the menu"
 
 

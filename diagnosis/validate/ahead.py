@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.validate.prediction import SETTLE_S, WINDOW_S, Span, predictions
+from diagnosis.validate.prediction import WINDOW_S, Span, predictions
 from records.log import RunLog
 from records.logs.live import LiveRow
 from sim.added_effects import without_effects
@@ -22,7 +23,7 @@ from sim.columns import log_columns
 
 Array = NDArray[np.float64]
 EVERY_S = 0.05  # between two predictions
-AHEAD_MEMORY_S = SETTLE_S + WINDOW_S + 2.0  # readings that one prediction is made from
+AHEAD_MEMORY_S = decisions.SETTLE_S + WINDOW_S + 2.0  # readings that one prediction is made from
 GAP_S = 10.0
 # Log10 of the noise on each axis' speed per square root of a second. Less of it leaves less of an exact twin's gap, and lets a twin that
 # lacks something lose its state: from -1.5 to -2 the first falls by a third to a half, the second grows by a tenth.
@@ -90,7 +91,7 @@ class Lookahead:
         spans = []
         for row in range(first, len(t_s)):
             begin = int(np.searchsorted(t_s, t_s[row] - WINDOW_S + 1e-9, side="right")) - 1
-            if t_s[row] >= self._asked_s + EVERY_S - 1e-9 and begin >= 0 and t_s[begin] - t_s[0] >= SETTLE_S:
+            if t_s[row] >= self._asked_s + EVERY_S - 1e-9 and begin >= 0 and t_s[begin] - t_s[0] >= decisions.SETTLE_S:
                 spans.append(Span(begin, row, row + 1))
                 self._asked_s = float(t_s[row])
         return spans

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Noise
 from diagnosis.hypothesis.case import Case, FilteredLog
@@ -20,8 +21,6 @@ from sim.paths.path import OutputStage
 
 Array = NDArray[np.float64]
 WINDOW_S = 1.0
-SETTLE_S = 2.0  # until then the filter cannot tell the speeds well enough
-SHORT_ROWS = 300  # as many as SETTLE_S and WINDOW_S hold at 100 Hz, at which helicopter and arms are logged
 UNSEEN_VARIANCE = 1e8  # variance of a reading that the state shall not follow, in squares of its own unit
 
 
@@ -75,13 +74,15 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
 
 def settled_after_s(t_s: Array) -> float:
     """How long the filter runs along a log before predictions begin."""
-    return SETTLE_S * _pace(t_s)
+    return decisions.SETTLE_S * _pace(t_s)
 
 
 def _pace(t_s: Array) -> float:
     """1 for a log that has room for a window behind what the filter needs, and for one of few rows; less for a short one of many, as
     fast plants give."""
-    return min(1.0, float(t_s[-1] - t_s[0]) / (SETTLE_S + WINDOW_S)) if len(t_s) >= SHORT_ROWS else 1.0
+    return (
+        min(1.0, float(t_s[-1] - t_s[0]) / (decisions.SETTLE_S + WINDOW_S)) if len(t_s) >= decisions.SHORT_ROWS else 1.0
+    )
 
 
 def windows(t_s: Array, length_s: float = WINDOW_S) -> list[tuple[int, int]]:
