@@ -25,6 +25,30 @@ AT_INSTANTS = {"row": -1, "lost": 0.0, "loss_power": 0.0, "untold_s": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
+class Added:
+    """What acts on a log beside the plant's equations, at instants t_s (m,): what it has added to each state since the first of them (m,
+    states), and what it adds to each output (m, outputs); in between, and of a filter input with instants of its own, linearly so."""
+
+    t_s: Array
+    states: Array
+    outputs: Array
+
+    def over_steps(self, t_s: Array, states: int) -> Array:
+        """What is added to each of the filter's `states` over the step from each of the instants t_s (n,) to the next (n, states)."""
+        found = np.zeros((len(t_s), states))
+        found[:-1, : self.states.shape[1]] = np.diff(_between(self.t_s, self.states, t_s), axis=0)
+        return found
+
+    def at(self, t_s: Array) -> Array:
+        """What is added to each output at instants t_s (n,): (n, outputs)."""
+        return _between(self.t_s, self.outputs, t_s)
+
+
+def _between(known_s: Array, values: Array, t_s: Array) -> Array:
+    return np.stack([np.interp(t_s, known_s, column) for column in values.T], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
 class FilterInput:
     """Instants t_s (m,) with inputs u (m, inputs) held from each to the next, measurements y (m, outputs), NaN where there is none,
     and their variances r (m, outputs).
@@ -35,7 +59,7 @@ class FilterInput:
     plant, `known` the sum of those that an effect makes meaningless. `lost` (m,) is the log of how much likelier each instant's
     command was lost than not, 0 where nothing is known, and `loss_power` (m,) the squared answer of the whitened innovations to its loss;
     `untold_s` (m,) for how long until the next instant nobody knows what was
-    commanded, as the log lacks rows there.
+    commanded, as the log lacks rows there. `added` is what acts beside the equations, None for nothing.
     """
 
     t_s: Array
@@ -53,6 +77,7 @@ class FilterInput:
     loss_power: Array
     untold_s: Array
     known: float = 0.0
+    added: Added | None = None
 
 
 def filter_input_of(

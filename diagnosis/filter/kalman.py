@@ -123,6 +123,7 @@ class Filter:
         width, steps = max(slots) + 1, len(filter_input.t_s)
         given = (
             _given(filter_input, p, x0, self._rubbing(noise))
+            | _added(filter_input, self.states)
             | _slopes([self._rubbing(by) for by in noises])
             | {
                 "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
@@ -252,6 +253,15 @@ def _given(filter_input: FilterInput, p: Array, x0: Array, noise: Noise) -> dict
         "forget": _double(noise.forget),
         "rub": _double(noise.rub),
     }
+
+
+def _added(filter_input: FilterInput, states: int) -> dict[str, NDArray[Any] | None]:
+    """What acts beside the equations, as in filter.h: what it adds to an output is taken from what was read."""
+    added = filter_input.added
+    if added is None:
+        return {}
+    y = _double(filter_input.y - added.at(filter_input.t_s))
+    return {"added": _double(added.over_steps(filter_input.t_s, states)), "y": y}
 
 
 def _slopes(noises: Sequence[Noise]) -> dict[str, NDArray[Any] | None]:

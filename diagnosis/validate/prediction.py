@@ -134,6 +134,7 @@ def _unseen(filter_input: FilterInput, begin: int, end: int, outputs: int) -> Fi
         lost=np.zeros(count),
         loss_power=np.zeros(count),
         untold_s=np.zeros(count),
+        added=filter_input.added,
     )
 
 

@@ -32,6 +32,7 @@ static void predict(filter_state *at, substep *part)
     doubt_friction(at, part);
     move_mean(at, part);
     find_rest(at, part);
+    add_to_mean(at, part);
     differentiate(at, part);
     find_transition(at, part);
     carry_slopes(at, part);

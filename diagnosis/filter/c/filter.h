@@ -17,6 +17,7 @@ typedef struct {
     const int64_t *row, *place;              /* [steps]: where the states go, [steps][N_OUTPUTS]: where the results go; or -1 */
     const double *p, *x0, *p0, *q;           /* [N_PARAMETERS]; [N_STATES]: start, its variance, noise intensity */
     const double *further;                   /* [steps][N_STATES] further variance over each step, or NULL */
+    const double *added;                     /* [steps][N_STATES] what is added to each state over each step, or NULL */
     const double *forget;                    /* [N_STATES]: the rate, in 1/s, at which a state that is noise alone decays; 0 for others */
     const double *rub;                       /* [AXES]: how long, in s, the friction of an axis about its rest is in doubt */
     const double *q_by, *p0_by, *forget_by;  /* [noises][N_STATES] slopes of those by numbers of the noise, */

@@ -24,6 +24,21 @@ static void move_mean(filter_state *at, const substep *part)
             at->body.x[i] = part->kept[i] * part->before.x[i];
 }
 
+/* What acts beside the equations; an axis that is held stays. */
+static void add_to_mean(filter_state *at, const substep *part)
+{
+    if (!at->request->added)
+        return;
+    double added[N];
+    for (int i = 0; i < N; i++)
+        added[i] = at->request->added[part->step * N + i] * part->share;
+    for (int a = 0; a < N_AXES; a++)
+        if (part->held[a])
+            added[AXIS_VELOCITY[a]] = 0.0;
+    for (int i = 0; i < N; i++)
+        at->body.x[i] += added[i];
+}
+
 static void find_middle(const filter_state *at, const substep *part, double *middle)
 {
     for (int i = 0; i < N; i++)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from scipy.signal import lfilter
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.filter.filter_input import spread
+from diagnosis.filter.filter_input import Added, spread
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.fit.nominal import nominal_fit
@@ -251,6 +252,44 @@ def test_answers_are_those_of_small_changes_of_the_input(case: Case, fitted: Fit
     assert np.all(change[:start] == 0.0), change[:start]
     assert np.abs(change).max() > 0.1
     assert np.allclose(found[:end], change, atol=0.02 * np.abs(change).max())
+
+
+def test_what_is_added_to_a_state_is_what_an_input_would_add(case: Case, settled: Hypothesis) -> None:
+    # A constant rise of a rotor's drive, put into the input or beside the equations: the same innovations within 2 % of the largest change,
+    # as beside the equations it comes at each step's end. What is added to an output is exactly what is taken from its readings.
+    (flight,) = case.flights
+    filter_input = flight.filter_input
+    (plain,) = passes(case, settled) or [None]
+    (column, (state, gain)) = next(iter(drives(case).items()))
+    p = coefficients(case, case.library.plain, settled)[: case.library.own]
+    rate = evaluated(case.library.bound.model, p, gain)
+    since_s, library = filter_input.t_s - filter_input.t_s[0], case.library
+    states, outputs = np.zeros((len(since_s), len(library.states))), np.zeros((len(since_s), len(library.outputs)))
+    states[:, state] = 1e-3 * rate * since_s
+    u = filter_input.u.copy()
+    u[:, column] += 1e-3
+    raised, pushed = (
+        _with(case, settled, u=u),
+        _with(case, settled, added=Added(filter_input.t_s, states, outputs)),
+    )
+    assert plain is not None
+    change = np.nan_to_num(raised.w - plain.w)
+    assert np.abs(change).max() > 0.1
+    assert np.allclose(np.nan_to_num(pushed.w - plain.w), change, atol=0.02 * np.abs(change).max())
+    outputs[:, 0] = 1e-3 * np.sin(since_s)
+    read = filter_input.y.copy()
+    read[:, 0] -= outputs[:, 0]
+    moved = _with(case, settled, added=Added(filter_input.t_s, 0.0 * states, outputs))
+    assert np.array_equal(moved.w, _with(case, settled, y=read).w, equal_nan=True)
+
+
+def _with(case: Case, hypothesis: Hypothesis, **changes: Any) -> Pass:
+    """The pass over a case's one log with its filter input changed."""
+    (flight,) = case.flights
+    changed = case.with_flights([replace(flight, filter_input=replace(flight.filter_input, **changes))])
+    (found,) = passes(changed, hypothesis) or [None]
+    assert found is not None
+    return found
 
 
 def test_sums_over_parts_are_those_of_the_whole_answer(
