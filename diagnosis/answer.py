@@ -32,7 +32,7 @@ from records.diagnosis import Diagnosis, Hypothesis, Unknown
 def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     """The answer where something is missing."""
     case, found, weighed = seen.case, judged.search, judged.weighed
-    blamed = suspects(seen.detection.by_form)
+    blamed = _blamed(seen.detection.by_form, judged)
     before, after = _innovations(case, found.nominal), _innovations(case, found.fitted[0])
     energy = removed_energy(before, after)
     predicted = () if judged.holdout is None else judged.holdout.predicted(judged.chosen)
@@ -44,7 +44,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         verdict="gap",
         false_alarm_probability=seen.detection.p,
         places=place_shares(
-            found, weighed, blamed[0].place if blamed else None, judged.beyond.places if judged.beyond else {}
+            found, weighed, blamed.place if blamed else None, judged.beyond.places if judged.beyond else {}
         ),
         when=time_map(case, energy),
         regions=region_map(case, energy),
@@ -55,7 +55,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
             _hypothesis(case, weighed, fitted, probability)
             for fitted, probability in zip(weighed.fitted, weighed.probabilities, strict=True)
         ),
-        unknown=_unknown(found, seen.detection.by_form, weighed, blamed[0] if blamed else None),
+        unknown=_unknown(found, seen.detection.by_form, weighed, blamed),
         partly=weighed.partly,
         found=judged.chosen.effects,
         shrinkage=None if judged.holdout is None else judged.holdout.shrinkage(predicted),
@@ -66,7 +66,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         note_records=notes,
         comparison=weighed.comparison,
     )
-    shape = shape_of(found.linearisation, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
+    shape = shape_of(judged.curve) if judged.curve is not None and weighed.nameless else None
     checked = None if holdout is None else holdout.case
     return Result(diagnosis, improved_plant(case, judged.chosen), case, predicted, shape, checked)
 
@@ -104,11 +104,21 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit
     return Result(diagnosis, improved_plant(case, chosen), case, predicted, None, checked)
 
 
+def _blamed(by_form: FormScores, judged: Judged) -> Suspect | None:
+    """Where something without a name would act: the free curve's place where one explains the logs, else that of the forms that explain
+    most to first order."""
+    curve = judged.curve
+    if curve is None:
+        return next(iter(suspects(by_form)), None)
+    gain = curve.evidence - judged.search.nominal.evidence
+    return Suspect(curve.curve.place, curve.curve.class_text, gain)
+
+
 def _unknown(found: Search, by_form: FormScores, weighed: Weighed, first: Suspect | None) -> Unknown:
     """The effect that no candidate explains; its form is asked for where nothing else is likelier."""
     if first is None:
         return Unknown(weighed.unknown)
-    form = suggestion(found.linearisation, by_form, first.place) if weighed.nameless else None
+    form = suggestion(found.linearisation, by_form, first) if weighed.nameless else None
     return Unknown(weighed.unknown, first.place, first.class_text, form)
 
 

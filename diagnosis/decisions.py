@@ -221,7 +221,7 @@ NEXT = Count(
     3,
     "hypotheses",
     "tried of each kind beside or after the best, further effects, effects in the place of another, fits begun once more, axes that yield, "
-    "starts of an event, a sine or an input's steps: time",
+    "starts of an event, a sine or an input's steps, free curves: time",
     "pairs and triples of seeds 900006 and 900007",
 )
 BEAM = Counts((3, 2), "hypotheses", "of each size that are worth a further effect: time", DEVELOPMENT)
@@ -254,7 +254,8 @@ MISSED = Limit(15.0, "nats", "far less likely", "the Quanser arm; seeds 900006 a
 WORTH_REFINING = Limit(
     0.2,
     "share of the best fit's gain",
-    "first fits below are not fitted to their end, and axes that yield are not asked for before what a search finds: time",
+    "first fits below are not fitted to their end, free curves that promise less not at all, and axes that yield are not asked for before "
+    "what a search finds: time",
     "development cases of the sealed generator, seeds 21 and 22; axes that yield: 0.02 at EMPS, whose friction is dry, 0.21 and more on "
     "spent cases of the second rig",
 )

@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.clock import clock_in_doubt
-from diagnosis.decide.consequence import foreseen, foreseen_rules
+from diagnosis.decide.consequence import curve_foreseen, foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.idle import shares_of, without_idle
@@ -27,6 +27,7 @@ from diagnosis.fit.nominal import plain_fit
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Search, search, with_twins
 from diagnosis.search.draughts import Draught, draught
+from diagnosis.search.free_curve import FittedCurve, free_curve
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
@@ -56,7 +57,8 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen = confirmed_by(seen, found, beyond)
     if not alarmed(seen.detection.p):
         return _nothing(seen, noisy, material, Exit.UNEXPLAINED)
-    seen, judged = _judged(seen, material, found, beyond)
+    curve = free_curve(seen.case, seen.retuned, seen.linearisation, found.fitted[0])
+    seen, judged = _judged(seen, material, found, beyond, curve)
     seen, left_by = of_consequence(seen, judged)
     if left_by is not None:
         perhaps = may_be_missing(judged) if left_by is Exit.TOO_UNSURE else ()
@@ -110,7 +112,7 @@ def _gust(seen: Seen, material: Material, found: Draught) -> Result:
     p = min(1.0, float(np.exp(-gained)))
     seen = replace(seen, retuned=found.quiet, detection=replace(seen.detection, p=p))
     search = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.score_tests)
-    seen, judged = _judged(seen, material, search, None)
+    seen, judged = _judged(seen, material, search)
     return _gap(seen, material, judged)
 
 
@@ -176,14 +178,17 @@ def _searched(seen: Seen) -> Search | None:
     return search(seen.case, seen.case.library.candidates, alone_of(seen))
 
 
-def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> tuple[Seen, Judged]:
+def _judged(
+    seen: Seen, material: Material, found: Search, beyond: Retune | None = None, curve: FittedCurve | None = None
+) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
     logs = FittedLogs(seen.case)
-    ranked = _ranked(seen, material, found, beyond, logs)
+    curve = None if curve is None else replace(curve, ahead_nats=curve_foreseen(logs, curve, seen.retuned))
+    ranked = _ranked(seen, material, found, beyond, curve, logs)
     wider = found if not ranked.weighed.fitted else with_twins(seen.case, found, ranked.weighed.fitted[0])
     if wider is not found:
         found = wider
-        ranked = _ranked(seen, material, found, beyond, logs, ranked.holdout)
+        ranked = _ranked(seen, material, found, beyond, curve, logs, ranked.holdout)
     seen, weighed, holdout, retuned = ranked.seen, ranked.weighed, ranked.holdout, seen.retuned
     doubts = doubt(seen.case, found, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *ranked.notes)
@@ -195,7 +200,7 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     elif holdout is not None:
         chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)
         seen, notes = seen.because(*rules), (*notes, *told)
-    return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
+    return seen, Judged(found, beyond, curve, weighed, chosen, holdout, notes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,6 +218,7 @@ def _ranked(
     material: Material,
     found: Search,
     beyond: Retune | None,
+    curve: FittedCurve | None,
     logs: FittedLogs,
     known: Holdout | None = None,
 ) -> _Ranked:
@@ -220,7 +226,7 @@ def _ranked(
 
     What predicts better is asked of all logs, whether a gap matters of those to explain alone: no further log makes a gap none.
     """
-    explanations = _explanations(seen, found, beyond)
+    explanations = _explanations(seen, found, beyond, curve)
     fitted_ahead = foreseen(logs, explanations)
     weighed = weigh(without_idle(explanations, shares_of(explanations, fitted_ahead, logs, None))[0], fitted_ahead)
     matters_nats = weighed.ahead_nats
@@ -244,14 +250,14 @@ def _likeliest(weighed: Weighed, beyond: Retune | None) -> FittedHypothesis | No
     return weighed.fitted[0] if weighed.fitted else None
 
 
-def _explanations(seen: Seen, found: Search, beyond: Retune | None) -> Explanations:
+def _explanations(seen: Seen, found: Search, beyond: Retune | None, curve: FittedCurve | None) -> Explanations:
     """All that may explain the gap; what swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     library = seen.case.library
     left = left_beside(form_scores(linearised(seen.case, best.fit)), [library.effects[name] for name in best.effects])
     named = tuple(entry for entry in found.fitted if entry.effects)
     alone, evidence = (None, None) if beyond is None else (beyond.fitted, beyond.score)
-    return Explanations(named, seen.retuned, library, left, alone, evidence)
+    return Explanations(named, seen.retuned, library, left, alone, evidence, curve)
 
 
 def _checked(

@@ -17,6 +17,7 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.beam import Alone, Search
+from diagnosis.search.free_curve import FittedCurve
 from diagnosis.search.retune import Retune
 from diagnosis.validate.shrinkage import Predicted
 from records.diagnosis import Diagnosis, Firmware
@@ -94,11 +95,12 @@ class Held:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """What is made of a gap: all that was tried, the re-tune beyond the spread, how probable each is, what the hold-out leaves of the
-    most probable (`chosen`, the plant without effects where it refutes all), and the notes so far."""
+    """What is made of a gap: all that was tried, the re-tune beyond the spread, the free curve, how probable each is, what the hold-out
+    leaves of the most probable (`chosen`, the plant without effects where it refutes all), and the notes so far."""
 
     search: Search
     beyond: Retune | None
+    curve: FittedCurve | None
     weighed: Weighed
     chosen: FittedHypothesis
     holdout: Holdout | None

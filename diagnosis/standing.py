@@ -81,7 +81,8 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, Exit | None]:
     surely = max(worth, -float(np.log(decisions.ALARM))) if small else worth
     told, rule = _consequence("matters", named(judged.weighed), ahead_nats or 0.0, worth, surely, "nats")
     seen = seen.because(rule)
-    if told is not Consequence.SURE and judged.holdout is not None and judged.weighed.fitted:
+    names = judged.weighed.fitted and not judged.weighed.nameless
+    if told is not Consequence.SURE and judged.holdout is not None and names:
         score = judged.holdout.score(judged.weighed.fitted[0].fit.hypothesis)
         worth, surely = float(decisions.MATTERS), decisions.SURELY * score.sd
         there, rule = _consequence("matters_elsewhere", named(judged.weighed), score.gain, worth, surely, NATS)

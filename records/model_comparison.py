@@ -3,12 +3,14 @@
 (1)  scale        = e^size (1 + formed)^power, nats that forms a little off the truth may cost: more where more is explained by them
 (2)  ln weight_i  = evidence_i / scale + prior_i - further n_i + ahead a_i, n_i effects beside one, a_i nats of predictions over a second
 (3)  ln weight_p  = evidence_p / scale + ahead a_p, of the plant's own parameters beyond their spread and no effect
-(4)  P(explained) = 1 / (1 + e^-z), z = intercept + left ln(1 + left) + gain ln(1 + gain) + favour f, of the likeliest by (2) and (3):
-     what it gains, and what is left beside it of what the best and then free forms gain; f is what logs say that were not fitted
+(4)  odds of explained = e^z / (1 + e^d), z = intercept + left ln(1 + left) + favour f, of the likeliest by (2) and (3): what is left
+     beside it of what the best and then free forms gain; f is what logs say that were not fitted. d = c / scale - curve - ln of the sum
+     of weights by (2) and (3) with a = 0, and of 1 for the plant alone: a free curve of evidence c is one more hypothesis beside them,
+     with log odds of -curve before the data; of what it foretells nobody knows, as it is made of signals as the logs had them
 (5)  P_i          = P(explained) weight_i / sum of weights
 
-The rest is an effect's that no candidate explains; where the likeliest has a name, of that a share is right in part, as so many wrong
-names of one effect or several were.
+The rest is an effect's that no candidate explains. Of that the free curve has e^d / (1 + e^d); of what it leaves, where the likeliest has a
+name, a share is right in part, as so many wrong names of one effect or several were.
 """
 
 from collections.abc import Mapping
@@ -42,7 +44,8 @@ class Candidate:
 class ModelComparison:
     """What is known of a gap's explanations: nats that the best of them gains (`gain_nats`), of these what rests on forms of effects
     (`formed_nats`), what free forms still gain beside it (`left_nats`), what logs that were not fitted say of the first (-1 to 1; None
-    without such logs or a first), and of parameters beyond their spread alone nats of evidence (None: there are none) and ahead."""
+    without such logs or a first), of parameters beyond their spread alone nats of evidence (None: there are none) and ahead, and nats of
+    evidence of a free curve instead of all these (None: none gains any), and ahead."""
 
     candidates: tuple[Candidate, ...]
     gain_nats: float
@@ -51,6 +54,8 @@ class ModelComparison:
     favour: float | None = None
     parameters_nats: float | None = None
     parameters_ahead_nats: float = 0.0
+    curve_nats: float | None = None
+    curve_ahead_nats: float = 0.0
 
     @property
     def columns(self) -> Array:
@@ -71,7 +76,7 @@ class ComparisonLaw:
     ahead: float
     intercept: float
     left: float
-    gain: float
+    curve: float
     favour: float
     partly_single: float
     partly_several: float
@@ -101,18 +106,33 @@ class ComparisonLaw:
         if not shares.any():
             return 0.0
         z = self.intercept + float(np.dot(self.coefficients, features(told, shares)))
-        return float(1.0 / (1.0 + np.exp(-z)))
+        z -= float(np.logaddexp(0.0, self.curve_logit(told)))
+        return float(0.5 * (1.0 + np.tanh(0.5 * z)))
 
     @property
     def coefficients(self) -> tuple[float, ...]:
-        """Those of (4), in the order of `features`."""
-        return (self.left, self.gain, self.favour)
+        """Those of z, in the order of `features`."""
+        return (self.left, self.favour)
 
-    def partly(self, first: Candidate | None) -> float:
-        """How often a part of a wrong name is right."""
+    def curve_logit(self, told: ModelComparison) -> float:
+        """d of (4): -inf without a free curve."""
+        if told.curve_nats is None:
+            return -np.inf
+        evidence_nats, prior, further, _ = told.columns
+        found = self.log_weights(np.array([evidence_nats, prior, further, 0.0 * prior]), told.formed_nats)
+        rivals = float(np.logaddexp.reduce(np.append(found, 0.0)))
+        return told.curve_nats / float(self.scale_nats(told.formed_nats)) - self.curve - rivals
+
+    def partly(self, told: ModelComparison, shares: Array) -> float:
+        """How often a part of a wrong likeliest is right."""
+        first = likeliest_of(told, shares)
         if first is None:
             return 0.0
-        return self.partly_several if first.further else self.partly_single
+        return self.without_curve(told) * (self.partly_several if first.further else self.partly_single)
+
+    def without_curve(self, told: ModelComparison) -> float:
+        """What a free curve leaves of that which no candidate explains."""
+        return float(np.exp(-np.logaddexp(0.0, self.curve_logit(told))))
 
 
 def likeliest_of(told: ModelComparison, shares: Array) -> Candidate | None:
@@ -122,12 +142,11 @@ def likeliest_of(told: ModelComparison, shares: Array) -> Candidate | None:
 
 
 def features(told: ModelComparison, shares: Array) -> tuple[float, ...]:
-    """What (4) is a function of, by the shares of (2) and (3)."""
+    """What z of (4) is a function of, by the shares of (2) and (3)."""
     first = likeliest_of(told, shares)
     evidence_nats = told.parameters_nats if first is None else first.evidence_nats
-    gain_nats = max(evidence_nats or 0.0, 0.0)
-    left_nats = told.left_nats + max(told.gain_nats - gain_nats, 0.0)
-    return (float(np.log1p(left_nats)), float(np.log1p(gain_nats)), told.favour or 0.0)
+    left_nats = told.left_nats + max(told.gain_nats - max(evidence_nats or 0.0, 0.0), 0.0)
+    return (float(np.log1p(left_nats)), told.favour or 0.0)
 
 
 def law_of(numbers: Mapping[str, Any]) -> ComparisonLaw:

@@ -35,11 +35,14 @@ class Example:
         place = int(np.argmax(shares))
         return law.explained(self.told) * float(shares[place]), self.right[place]
 
-    def partly(self, law: ComparisonLaw) -> tuple[bool, bool] | None:
-        """Whether the likeliest is of several effects, and whether some of them is right; None where it is right, or has no name."""
+    def partly(self, law: ComparisonLaw) -> tuple[bool, bool, float] | None:
+        """Whether the likeliest is of several effects, whether some of them is right, and the share of that which no free curve explains;
+        None where it is right, or has no name."""
         shares = law.shares(self.told)
         first, place = likeliest_of(self.told, shares), int(np.argmax(shares))
-        return None if first is None or self.right[place] else (first.further > 0, self.touching[place])
+        if first is None or self.right[place]:
+            return None
+        return first.further > 0, self.touching[place], law.without_curve(self.told)
 
 
 @dataclass(frozen=True)

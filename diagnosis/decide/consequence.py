@@ -7,7 +7,9 @@ from diagnosis.decide.idle import one_less
 from diagnosis.decide.weighing import Explanations, Weighed
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
+from diagnosis.search.free_curve import FittedCurve
 from diagnosis.validate.fitted_logs import FittedLogs
+from diagnosis.validate.score import score
 from jobs.thread_map import thread_map
 from records.reasons import Decision
 
@@ -28,6 +30,12 @@ def foreseen(logs: FittedLogs, explanations: Explanations) -> dict[FittedHypothe
     plain, readings = explanations.nominal.fit.hypothesis, logs.readings
     gains = thread_map(lambda entry: logs.gain(entry.fit.hypothesis, plain), asked)
     return {entry: readings * gain for entry, gain in zip(asked, gains, strict=True)}
+
+
+def curve_foreseen(logs: FittedLogs, curve: FittedCurve, plain: FittedHypothesis) -> float:
+    """The same of a free curve, of signals as the logs had them: what is missing, not what foretells it."""
+    with_curve = FittedLogs(curve.case).errors(curve.fit.hypothesis)
+    return logs.readings * score(with_curve, logs.errors(plain.fit.hypothesis)).gain
 
 
 def foreseen_rules(foretold: Mapping[FittedHypothesis, float], weighed: Weighed) -> tuple[Decision, ...]:

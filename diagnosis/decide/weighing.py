@@ -16,6 +16,7 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.search.exchange import is_twin
+from diagnosis.search.free_curve import FittedCurve
 from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, law_of, likeliest_of
 from records.reasons import Decision
 
@@ -53,8 +54,8 @@ class Weighed:
 @dataclass(frozen=True, eq=False)
 class Explanations:
     """All that may explain a gap: hypotheses with effects, the plant without any, what forms still gain beside the best of them in nats,
-    and parameters beyond their spread alone with their evidence (None: there are none); and the evidence that hypotheses have `beside`
-    effects that are not worth a name."""
+    parameters beyond their spread alone with their evidence and a free curve (None: there are none); and the evidence that hypotheses have
+    `beside` effects that are not worth a name."""
 
     named: tuple[FittedHypothesis, ...]
     nominal: FittedHypothesis
@@ -62,6 +63,7 @@ class Explanations:
     left_nats: float
     beyond: FittedHypothesis | None = None
     retune: float | None = None
+    curve: FittedCurve | None = None
     beside: Mapping[FittedHypothesis, float] = field(default_factory=dict)
 
     def evidence(self, entry: FittedHypothesis) -> float:
@@ -88,7 +90,7 @@ def weigh(
     shares, explained = learnt.shares(told), learnt.explained(told)
     order = np.argsort(-shares[:-1], kind="stable")[:RANKED].tolist()
     first = likeliest_of(told, shares)
-    partly = (1.0 - explained) * learnt.partly(first)
+    partly = (1.0 - explained) * learnt.partly(told, shares)
     scale = float(learnt.scale_nats(told.formed_nats))
     return Weighed(
         tuple(explanations.named[index] for index in order),
@@ -99,19 +101,20 @@ def weigh(
         _rules(told, first, scale, explained),
         partly,
         told,
-        _ahead_nats(told, shares),
+        _ahead_nats(told, explained * shares, (1.0 - explained) * (1.0 - learnt.without_curve(told))),
     )
 
 
-def _ahead_nats(told: ModelComparison, shares: Array) -> float | None:
-    """What explains predicts better, in the mean by its shares; None where nothing explains."""
-    ahead = [*(one.ahead_nats for one in told.candidates), told.parameters_ahead_nats]
-    return float(np.dot(shares, ahead)) if shares.any() else None
+def _ahead_nats(told: ModelComparison, named: Array, curve: float) -> float | None:
+    """What explains predicts better, in the mean by probabilities, of what is `named` and of the `curve`; None where nothing explains."""
+    ahead = [*(one.ahead_nats for one in told.candidates), told.parameters_ahead_nats, told.curve_ahead_nats]
+    weights = np.append(named, curve)
+    return float(np.average(ahead, weights=weights)) if weights.any() else None
 
 
 def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, float]) -> ModelComparison:
     least = min(ahead.values(), default=0.0)
-    nominal, effects = explanations.nominal, explanations.library.effects
+    nominal, effects, curve = explanations.nominal, explanations.library.effects, explanations.curve
     first = max(explanations.named, key=explanations.evidence, default=nominal)
     found = explanations.evidence(first)
     best = found if explanations.retune is None else max(found, explanations.retune)
@@ -130,6 +133,8 @@ def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, flo
         formed_nats=max(found - _read_off(explanations, first).evidence, 0.0),
         left_nats=explanations.left_nats,
         parameters_nats=None if explanations.retune is None else explanations.retune - nominal.evidence,
+        curve_nats=None if curve is None else curve.evidence - nominal.evidence,
+        curve_ahead_nats=0.0 if curve is None else curve.ahead_nats,
         parameters_ahead_nats=0.0 if explanations.beyond is None else ahead.get(explanations.beyond, least),
     )
 
@@ -150,9 +155,14 @@ def _rules(told: ModelComparison, first: Candidate | None, scale: float, explain
     of = "plant" if first is None else first.effect
     return (
         held_against("told_apart", of, told.gain_nats, scale, "nats", "apart" if told.gain_nats > scale else "alike"),
+        held_against("free_curve", of, told.curve_nats or 0.0, told.gain_nats, "nats", _better(told)),
         held_against("forms_left", of, told.left_nats, told.gain_nats, "nats", "counts"),
         held_against("explained", of, explained, decisions.LIKELIER_THAN_NOT, "probability", _odds(explained)),
     )
+
+
+def _better(told: ModelComparison) -> str:
+    return "explains more" if (told.curve_nats or 0.0) > told.gain_nats else "explains less"
 
 
 def _odds(explained: float) -> str:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.shapes import SQUARE, Shapes, beyond, follower, jitter, plain, shaped, waves_a_turn
-from diagnosis.detect.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals
+from diagnosis.detect.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals, through
 from diagnosis.detect.waves import likely_waves
 from diagnosis.hypothesis.case import Case
 
@@ -135,8 +135,8 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
         x = in_units(text, places.inputs[place].size)
         speed, o, over = s.rotor[name], rotor_name(case, name), rotor_unit(case, name)
         changes = np.append(0.0, np.diff(u))
-        through = list(_through(case, name, s))
-        for target, gain in through:
+        ways = [(target, s.h / inertia) for target, inertia in through(case, name, s)]
+        for target, gain in ways:
             known: Shapes = {"sgn({x})": lambda x: np.tanh(x / 0.03), "|{x}|": np.abs, SQUARE: lambda x: x * np.abs(x)}
             for _, shape, value in shaped(text, x, u, known):
                 yield place, text, shape, target, value * gain
@@ -158,7 +158,7 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
             SQUARE: lambda x: x * np.abs(x),
             "{x}^3": lambda x: x**3,
         }
-        for target, gain in through[: 1 if rotor.drive is not None else 0]:
+        for target, gain in ways[: 1 if rotor.drive is not None else 0]:
             for _, shape, value in shaped(o, over, speed, rubs):
                 yield name, f"torque({o}) on rotor", shape, target, value * gain
         for axis in rotor.thrusts:
@@ -209,14 +209,3 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
         for other in s.angle:
             if other != axis:
                 yield place, f"output({names[other]}) of {q}", names[other], target, s.angle[other]
-
-
-def _through(case: Case, rotor: str, s: Signals) -> Iterator[tuple[int, Array]]:
-    """Where an input's change enters: the rotor's speed, or the axes that it pushes where the speed is no state."""
-    library, place = case.library, case.library.bound.model.places.rotors[rotor]
-    if place.drive is not None:
-        yield library.states.index(str(place.speed)), s.h
-        return
-    axis = next(iter(place.thrusts))
-    velocity = next(str(entry.velocity) for entry in library.bound.model.axes if entry.name == axis)
-    yield library.states.index(velocity), s.h / s.inertia[axis]

@@ -53,6 +53,10 @@ class Linearisation:
         moved = self.solve @ own
         return float(moved @ (self._pull + 0.5 * own)), float(own @ moved / (change @ change))
 
+    def moved_by(self, answers: Array) -> Array:
+        """Where theta goes from here (free,), to first order, beside what the plant lacks and the logs have: `answers` (rows,) of it."""
+        return np.asarray(-self.solve @ (self._pull - self.slopes.T @ answers))
+
     def scores(self, gram: Array, cross: Array, pull: Array) -> Scores:
         """Scores of columns with products gram = E'E (k, k), cross = J'E (free, k) and pull = E'w (k,)."""
         share = self.solve @ cross

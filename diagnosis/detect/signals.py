@@ -1,6 +1,6 @@
 """What a flight went through as the filter predicts it, and the names under which forms speak of it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,6 +13,15 @@ from diagnosis.hypothesis.case import Case
 from sim.model import TIME, Model
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a signal is: its name, its unit, and the size in that unit by which it counts."""
+
+    name: str
+    unit: str
+    size: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,3 +111,15 @@ def rotor_name(case: Case, rotor: str) -> str:
     if place.drive is None:
         return str(place.variable).rsplit("_", 1)[0]
     return f"omega_{place.letter}" if place.letter else "omega"
+
+
+def through(case: Case, rotor: str, s: Signals) -> Iterator[tuple[int, Array]]:
+    """Where an input's change enters, and what inertia it meets there: the rotor's speed, or the axes that it pushes where the speed is no
+    state."""
+    library, place = case.library, case.library.bound.model.places.rotors[rotor]
+    if place.drive is not None:
+        yield library.states.index(str(place.speed)), np.ones_like(s.t)
+        return
+    axis = next(iter(place.thrusts))
+    velocity = next(str(entry.velocity) for entry in library.bound.model.axes if entry.name == axis)
+    yield library.states.index(velocity), s.inertia[axis]

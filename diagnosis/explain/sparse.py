@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
+from diagnosis.decide.unknown import Suspect
 from diagnosis.detect.detection import MEAN_GAIN, FormScores
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Linearisation
-from diagnosis.explain.curve import axis_of_target
+from diagnosis.explain.curve import target_of
 
 Array = NDArray[np.float64]
 
@@ -25,8 +26,8 @@ class Term:
     sd: float
 
 
-def sparse_form(by_form: FormScores, place: str) -> tuple[Term, ...]:
-    """The terms at a place, by orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993) on the whitened innovations.
+def sparse_form(by_form: FormScores, place: str, class_text: str) -> tuple[Term, ...]:
+    """The terms of a class at a place, by orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993) on the whitened innovations.
 
     In each turn the form joins that gains most beside those chosen, and all coefficients are solved anew:
 
@@ -38,7 +39,7 @@ def sparse_form(by_form: FormScores, place: str) -> tuple[Term, ...]:
     chosen: list[int] = []
     total = 0.0
     while len(chosen) < decisions.MOST_TERMS:
-        members = _members(by_form, place, chosen)
+        members = _members(by_form, (place, class_text), chosen)
         gains = _gains(by_form, chosen, members)
         if not len(gains) or np.max(gains) < max(decisions.NATS_PER_TERM, decisions.FURTHER_TERM_SHARE * total):
             break
@@ -58,12 +59,12 @@ def sparse_form(by_form: FormScores, place: str) -> tuple[Term, ...]:
     )
 
 
-def suggestion(linearisation: Linearisation, by_form: FormScores, place: str) -> str | None:
-    """What sparse regression suggests for a place, as a sentence ("d phi_dot/dt gains -0.2 sin(6 phi) rad/s^2"); None for no form."""
-    terms = sparse_form(by_form, place)
+def suggestion(linearisation: Linearisation, by_form: FormScores, suspect: Suspect) -> str | None:
+    """What sparse regression suggests for a suspect, as a sentence ("d phi_dot/dt gains -0.2 sin(6 phi) rad/s^2"); None for no form."""
+    terms = sparse_form(by_form, suspect.place, suspect.class_text)
     if not terms:
         return None
-    target = axis_of_target(linearisation, terms[0].target)
+    target = target_of(linearisation.case.library, terms[0].target)
     return f"{target.name} gains {form_text(terms)} {target.unit}"
 
 
@@ -77,14 +78,14 @@ def form_text(terms: Sequence[Term]) -> str:
     return found
 
 
-def _members(by_form: FormScores, place: str, chosen: Sequence[int]) -> list[int]:
-    """Forms that may join: of this place and target, and with a signature that the plant's parameters do not imitate."""
+def _members(by_form: FormScores, of: tuple[str, str], chosen: Sequence[int]) -> list[int]:
+    """Forms that may join: of this place, class and target, and with a signature that the plant's parameters do not imitate."""
     norm, raw = np.diag(by_form.scores.gram), by_form.scores.raw
 
     def may(index: int, form: Form) -> bool:
         alike = not chosen or form.target == by_form.forms[chosen[0]].target
         return (
-            form.place == place
+            (form.place, form.class_text) == of
             and alike
             and norm[index] > decisions.LEAST_LEFT_SHARE * max(raw[index], 1e-12)
             and index not in chosen

@@ -21,7 +21,7 @@ from records.model_comparison import Candidate, ComparisonLaw, ModelComparison
 from tests.blind.test_score import effect, truth
 from twinlaw.command import main
 
-TRUE = ComparisonLaw(1.5, 0.3, 2.0, 0.6, 1.0, -0.6, 0.4, 1.5, 0.5, 0.5)
+TRUE = ComparisonLaw(1.5, 0.3, 2.0, 0.6, 2.5, -0.5, 2.0, 1.5, 0.5, 0.5)
 
 
 def example(rng: np.random.Generator) -> Example:
@@ -32,7 +32,8 @@ def example(rng: np.random.Generator) -> Example:
         Candidate(name, gain - scale * rng.exponential(2.0), 0.0, rng.normal(0.0, 2.0))
         for name in ("a.one", "a.two", "a.one + a.two")
     )
-    told = ModelComparison(candidates, gain, gain, float(np.exp(rng.uniform(1.0, 7.0))), rng.uniform(-1.0, 1.0))
+    left, curve = float(np.exp(rng.uniform(1.0, 7.0))), gain + scale * rng.normal(0.0, 4.0)
+    told = ModelComparison(candidates, gain, gain, left, rng.uniform(-1.0, 1.0), curve_nats=float(curve))
     p = TRUE.explained(told) * TRUE.shares(told)[:-1]
     drawn = int(np.searchsorted(np.cumsum(p), rng.random()))
     return Example(told, tuple(drawn == place for place in range(3)), (False,) * 3)
@@ -71,7 +72,7 @@ def test_few_answers_have_a_finite_law_and_what_none_tells_of_stays_as_believed_
     assert [getattr(found, name) for name in BELIEVED] == pytest.approx(
         [mean for mean, _ in BELIEVED.values()], abs=1e-3
     )
-    assert np.isfinite([found.intercept, found.left, found.gain, found.favour]).all()
+    assert np.isfinite([found.intercept, found.left, found.curve, found.favour]).all()
     assert found.explained(told) > 0.9
 
 
@@ -180,10 +181,10 @@ def test_a_smaller_library_explains_less_and_what_it_names_is_wrong() -> None:
     assert withheld(replace(answer, touching=(False, False))) == ()
 
 
-def test_where_no_name_explains_and_forms_do_much_the_law_says_unknown() -> None:
+def test_where_no_name_explains_and_forms_and_a_free_curve_do_much_the_law_says_unknown() -> None:
     told = [replace(one, examples=tuple(replace(e, touching=e.right) for e in one.examples)) for one in families(60)]
     found = calibrate(told)
-    nameless = ModelComparison((), gain_nats=0.0, formed_nats=0.0, left_nats=4000.0, parameters_nats=0.0)
+    nameless = ModelComparison((), 0.0, 0.0, left_nats=4000.0, parameters_nats=0.0, curve_nats=4000.0)
     named = ModelComparison((Candidate("azimuth.tilt", 4000.0, 0.0),), 4000.0, 4000.0, 5.0, 0.8, 0.0)
     assert found.law.explained(nameless) < 0.2 < 0.7 < found.law.explained(named)
 

@@ -150,7 +150,7 @@ def test_a_doubt_about_rows_goes_where_an_effect_is_told_that_explains_it(monkey
     monkeypatch.setattr("diagnosis.diagnose.rows_in_doubt", lambda case, found, notes: ())
     monkeypatch.setattr("diagnosis.diagnose.gap", lambda seen, material, judged: judged.notes)
     for chosen, kept in ((named, ()), (plain_fit(), (late,))):
-        judged = Judged(object(), None, object(), chosen, None, (late,))  # type: ignore[arg-type]
+        judged = Judged(object(), None, None, object(), chosen, None, (late,))  # type: ignore[arg-type]
         assert _gap(seen(), Material([], [], [], []), judged) == kept
 
 
@@ -158,7 +158,7 @@ def test_a_small_gap_that_nothing_explains_does_not_stand_and_keeps_its_chance()
     small = seen()
     small = replace(small, detection=replace(small.detection, p=4e-5, largest=30.0, moved=False))
     weighed = Weighed((), (), 0.66, 0.34, 10.0, ahead_nats=3.0)
-    result = Judged(object(), None, weighed, small.retuned, None, ())  # type: ignore[arg-type]
+    result = Judged(object(), None, None, weighed, small.retuned, None, ())  # type: ignore[arg-type]
     after, left_by = of_consequence(small, result)
     assert (
         left_by is Exit.TOO_UNSURE

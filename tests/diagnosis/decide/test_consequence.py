@@ -37,7 +37,7 @@ def seen(case: Case, plain: FittedHypothesis, largest: float = 100.0, moved: boo
 def judged(found: FittedHypothesis | None, ahead_nats: float | None) -> Judged:
     """What is made of a gap that one hypothesis, or nothing, explains."""
     weighed = Weighed(() if found is None else (found,), (0.9,), 0.1, 0.0, 10.0, ahead_nats=ahead_nats)
-    return Judged(object(), None, weighed, found, None, ())  # type: ignore[arg-type]
+    return Judged(object(), None, None, weighed, found, None, ())  # type: ignore[arg-type]
 
 
 def weighed_of(case: Case, plain: FittedHypothesis, found: FittedHypothesis) -> Weighed:

@@ -147,7 +147,7 @@ def test_a_hold_out_of_another_rig_makes_no_gap_none() -> None:
     named = replace(found, evidence=30.0)
     weighed = weigh(Explanations((named,), plain, case.library, 20.0), {named: 10.0}, favour(told))
     assert weighed.probabilities[0] < 0.5
-    result = Judged(object(), None, weighed, other.base, other, notes)  # type: ignore[arg-type]
+    result = Judged(object(), None, None, weighed, other.base, other, notes)  # type: ignore[arg-type]
     after, left_by = of_consequence(seen, result)
     assert left_by is None
     assert after.detection.p == 1e-4
@@ -169,7 +169,7 @@ def test_what_logs_that_were_not_fitted_may_be_predicted_better_by_is_not_said_t
     detection = Detection(1e-4, Tail(5.0, 1.0), 30.0, False, FormScores((), empty, np.zeros(0)))
     seen = Seen(case, None, holdout.base, object(), (), None, detection)  # type: ignore[arg-type]
     weighed = Weighed((found,), (0.6,), 0.4, 0.0, 10.0, ahead_nats=0.0)
-    result = Judged(object(), None, weighed, found, holdout, ())  # type: ignore[arg-type]
+    result = Judged(object(), None, None, weighed, found, holdout, ())  # type: ignore[arg-type]
     assert of_consequence(seen, result)[1] is left_by
     assert [note.subject for note in may_be_missing(result)] == ["arm.coulomb"]
 

@@ -2,15 +2,17 @@
 
 from dataclasses import fields, replace
 
+import numpy as np
 import pytest
 
 from diagnosis.decide.weighing import Explanations, alike, learned, weigh
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.library.effect_library import effect_library
+from diagnosis.search.free_curve import FittedCurve
 from records.model_comparison import ComparisonLaw
 from tests.diagnosis.arm import arm, plain_linearisation
 
-LAW = ComparisonLaw(1.2, 0.28, 2.5, 1.0, 0.0, -0.5, 0.4, 3.0, 0.1, 0.8)
+LAW = ComparisonLaw(1.2, 0.28, 2.5, 1.0, 2.4, -0.5, 3.0, 3.0, 0.1, 0.8)
 
 
 def fitted(evidence: float, **effects: dict[str, float]) -> FittedHypothesis:
@@ -58,6 +60,18 @@ def test_what_forms_leave_makes_an_unknown_effect_likelier() -> None:
     assert much > little + 0.3
 
 
+@pytest.mark.parametrize(("gained", "nameless"), [(100.0, False), (400.0, False), (1000.0, True)])
+def test_what_a_free_curve_explains_better_has_no_name(gained: float, nameless: bool) -> None:
+    named = explanations(RUB)
+    plain = named.nominal
+    nothing = np.zeros(0)
+    curve = FittedCurve(None, nothing, nothing, plain_linearisation().case, plain.fit, gained)  # type: ignore[arg-type]
+    found = weigh(replace(named, curve=curve), {}, None, LAW)
+    assert found.comparison is not None
+    assert found.comparison.curve_nats == gained
+    assert found.nameless is nameless
+
+
 def test_parameters_that_leave_their_spread_are_paid_in_full() -> None:
     """Truth: five deviations are two beyond the three that are free, half of 2^2 nats, however little of its evidence counts."""
     theta = RUB.fit.hypothesis.theta.copy()
@@ -85,11 +99,11 @@ def test_names_that_the_logs_hardly_tell_apart_are_alike() -> None:
 
 
 def test_the_learned_law_says_what_such_a_law_must() -> None:
-    """Truth: more left is likelier unknown, what predicts better is likelier, further effects cost, a part of several is oftener right;
-    ten numbers."""
+    """Truth: more left is likelier unknown, what predicts better is likelier, further effects cost, as does a free curve, a part of several
+    is oftener right; ten numbers."""
     law = learned()
     assert law.left <= 0.0 <= law.favour
-    assert law.gain >= 0.0
+    assert law.curve > 0.0
     assert law.further > 0.0
     assert law.ahead > 0.0
     assert 0.0 < law.partly_single < law.partly_several < 1.0

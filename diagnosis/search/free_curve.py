@@ -1,0 +1,191 @@
+"""The free curve that explains the logs best: what an effect outside the library does, fitted as effects are, with an evidence like theirs.
+
+(1)  e = ln p(logs | theta, b) + ln p(theta) - b'b / 2 s^2 - ln |A| / 2 - ln |1 + s^2 G| / 2 - SHAPE_COST - ln n
+
+by Laplace at the best theta and weights b of one of n curves, with A the information of theta, G that of b beyond it, s the spread of the
+weights, by the largest evidence (MacKay 2003, chapter 28): one shape more. Gauss-Newton in b, theta and noise fitted anew
+beside each step.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis import decisions
+from diagnosis.detect.curves import Curve, curves
+from diagnosis.detect.linearisation import Linearisation, Scores, linearised
+from diagnosis.filter.filter_input import Added
+from diagnosis.fit.coloured_noise import coloured_noise_of
+from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.nominal import with_memory_of
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Hypothesis, has_memory
+from jobs.thread_map import thread_map
+
+Array = NDArray[np.float64]
+SPREADS = np.logspace(-0.5, 4.0, 19)  # of weights, in units of what the logs tell of the one that they tell most of
+ROUNDS = 8
+PARTS = (1.0, 0.5, 0.25, 0.1, 0.03)  # of a step, until one leads up
+LEAST_GAIN = 1.0  # nats, of a round: less is an end
+AT_ONCE = 256  # weights that the filter answers at once
+
+
+@dataclass(frozen=True, eq=False)
+class FittedCurve:
+    """A curve with its weights b (k,) and their `covariance` (k, k), the plant's fit beside it and its evidence; `case` are the logs with
+    what it adds to them, `ahead_nats` is by how much it predicts them better than the plant alone, where that was asked."""
+
+    curve: Curve
+    b: Array
+    covariance: Array
+    case: Case
+    fit: Fit
+    evidence: float
+    ahead_nats: float = 0.0
+
+
+class _Weights(NamedTuple):
+    """Weights to first order: their evidence, their variance s^2, and the step to them."""
+
+    evidence: float
+    variance: float
+    step: Array
+
+
+def free_curve(
+    case: Case, retuned: FittedHypothesis, linearisation: Linearisation, known: FittedHypothesis
+) -> FittedCurve | None:
+    """The most evident of the curves beside the plant alone, which is `retuned` with its `linearisation`; None where none gains.
+
+    Those that promise a fair share of what the best does are fitted, as few as of any kind, with noise with a memory where the hypothesis
+    that is `known` has some, as both are compared.
+    """
+    found = curves(linearisation)
+    promised = _promised(linearisation, found)
+    best = max(promised, default=0.0)
+    order = sorted(range(len(found)), key=lambda index: -promised[index])[: decisions.NEXT]
+    asked = [
+        found[index] for index in order if promised[index] >= max(decisions.WORTH_REFINING * best, decisions.LEAST_GAIN)
+    ]
+    fitted = thread_map(
+        lambda curve: _fitted(case, retuned.fit, linearisation, curve, len(found), known.fit.hypothesis), asked
+    )
+    likeliest = max(fitted, key=lambda entry: entry.evidence, default=None)
+    return likeliest if likeliest is not None and likeliest.evidence > retuned.evidence else None
+
+
+def _promised(linearisation: Linearisation, found: Sequence[Curve]) -> list[float]:
+    """What each curve gains in evidence, to first order."""
+    gains = [0.0] * len(found)
+    for target, places in _batches(found):
+        answers = _answers(linearisation, [found[place] for place in places], target)
+        begin = 0
+        for place in places:
+            end = begin + found[place].weights
+            gains[place] = _weights(linearisation.scores_of(answers[:, begin:end]), np.zeros(end - begin)).evidence
+            begin = end
+    return gains
+
+
+def _batches(found: Sequence[Curve]) -> Iterator[tuple[int, list[int]]]:
+    """Curves of one target, by place, no more than the filter answers at once."""
+    for target in sorted({curve.target for curve in found}):
+        batch, weights = list[int](), 0
+        for place in (place for place, curve in enumerate(found) if curve.target == target):
+            if weights + found[place].weights > AT_ONCE:
+                yield target, batch
+                batch, weights = [], 0
+            batch.append(place)
+            weights += found[place].weights
+        yield target, batch
+
+
+def _weights(scores: Scores, b: Array) -> _Weights:
+    """The most evident spread of the weights of a linear problem at `b`, and the step to its top.
+
+    (2)  ln E = g'(G + 1 / s^2)^-1 g / 2 - ln |1 + s^2 G| / 2,   g = G b - score,   as a score is what the logs would be answered with
+    """
+    G = scores.gram
+    unit = max(float(np.diag(G).max()), 1e-300)
+    curvature, directions = np.linalg.eigh(G / unit)
+    curvature = np.maximum(curvature, 0.0)
+    pull = directions.T @ (G @ b - scores.score) / np.sqrt(unit)
+    volume = 1.0 + SPREADS[:, None] ** 2 * curvature
+    told = 0.5 * np.sum(SPREADS[:, None] ** 2 * pull**2 / volume - np.log(volume), axis=1)
+    best = int(np.argmax(told))
+    variance = float(SPREADS[best]) ** 2 / unit
+    step = np.linalg.solve(G + np.eye(len(G)) / variance, -scores.score - b / variance)
+    return _Weights(float(told[best]), variance, np.asarray(step, float))
+
+
+def _fitted(case: Case, start: Fit, begun: Linearisation, curve: Curve, count: int, known: Hypothesis) -> FittedCurve:
+    """A curve fitted from the plant alone."""
+    at, here, there, b = start, case, begun, np.zeros(curve.weights)
+    for _ in range(ROUNDS):
+        answers = _answers(there, [curve], curve.target)
+        weights = _weights(there.scores_of(answers), b)
+        further = _further(case, at, here, there, curve, answers, b, weights)
+        if further is None:
+            break
+        gained = _penalised(further[1], further[2], weights) - _penalised(at, b, weights)
+        here, at, b = further
+        there = linearised(here, at)
+        if gained < LEAST_GAIN:
+            break
+    noisy = with_memory_of(here, at, known) if has_memory(case, known) else at
+    if noisy.log_posterior > at.log_posterior:
+        at, there = noisy, linearised(here, noisy)
+    scores = there.scores_of(_answers(there, [curve], curve.target))
+    variance = _weights(scores, b).variance
+    covariance = np.asarray(np.linalg.inv(scores.gram + np.eye(len(b)) / variance), float)
+    volume = float(len(b) * np.log(variance) - np.linalg.slogdet(covariance)[1])
+    cost = 0.5 * float(b @ b) / variance + 0.5 * volume + decisions.SHAPE_COST + float(np.log(count))
+    return FittedCurve(curve, b, covariance, here, at, evidence(at, case.library.effects) - cost)
+
+
+def _further(
+    case: Case, at: Fit, here: Case, there: Linearisation, curve: Curve, answers: Array, b: Array, weights: _Weights
+) -> tuple[Case, Fit, Array] | None:
+    """The logs with a step more of the curve, the plant's fit to them and the weights there; None where no part of the step leads up."""
+    theta = there.moved_by(answers @ weights.step)
+    for part in PARTS:
+        moved = b + part * weights.step
+        with_curve = _added(case, curve, moved)
+        begun = replace(at.hypothesis, theta=at.hypothesis.theta + part * theta)
+        found = fit(with_curve, begun, rounds=2)
+        if found is not None and _penalised(found, moved, weights) > _penalised(at, b, weights):
+            again = fit(with_curve, coloured_noise_of(with_curve, found.hypothesis), rounds=3)
+            return with_curve, found if again is None or again.log_posterior < found.log_posterior else again, moved
+    return None
+
+
+def _penalised(at: Fit, b: Array, weights: _Weights) -> float:
+    """What a fit with weights `b` is worth, in nats, but for volumes."""
+    return at.log_posterior - 0.5 * float(b @ b) / weights.variance
+
+
+def _answers(linearisation: Linearisation, found: Sequence[Curve], target: int) -> Array:
+    """What the weights of curves of one target, side by side, do to the whitened innovations (rows, weights)."""
+    moves, values = target < len(linearisation.case.library.states), []
+    for flight, filter_input in enumerate(linearisation.filter_inputs):
+        value = np.concatenate([curve.at(flight, filter_input.t_s) for curve in found], axis=1)
+        values.append(value * np.append(np.diff(filter_input.t_s), 0.0)[:, None] if moves else value)
+    return linearisation.answer([value.__getitem__ for value in values], target)
+
+
+def _added(case: Case, curve: Curve, b: Array) -> Case:
+    """The logs with what a curve adds."""
+    library = case.library
+    flights = []
+    for flight, t_s, values in zip(case.flights, curve.t_s, curve.values, strict=True):
+        states, outputs = np.zeros((len(t_s), len(library.states))), np.zeros((len(t_s), len(library.outputs)))
+        if curve.target < len(library.states):
+            states[1:, curve.target] = np.cumsum(np.diff(t_s) * (values[:-1] @ b))
+        else:
+            outputs[:, curve.target - len(library.states)] = values @ b
+        flights.append(replace(flight, filter_input=replace(flight.filter_input, added=Added(t_s, states, outputs))))
+    return case.with_flights(flights)
