@@ -8,7 +8,7 @@ from records.text.uncertain import to_sd
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
-from twinlaw.pages.diagnose.words import doubts_in_words, listed, percent, plain_unit, words
+from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, listed, percent, plain_unit, words
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
 LEAST_TOLD = 0.01  # share of the error below which its going is not told
@@ -93,4 +93,6 @@ def _nothing_added(diagnosis: Diagnosis) -> str:
             f"The rig does something{where} that the plant file lacks, most likely {words(first.effect)} "
             f"({percent(first.probability)}); but with that the hold-out logs are not predicted better, so it was not added."
         )
-    return f"The rig does something{where} that the plant file lacks, and no effect of the library can be named for it."
+    what = dependence_in_words(unknown.class_) if unknown.class_ else ""
+    found = f"something{where} that the plant file lacks{f', {what}' if what else ''}"
+    return f"The rig does {found}; no effect of the library can be named for it."

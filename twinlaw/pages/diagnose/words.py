@@ -32,6 +32,7 @@ _CLASSES = {
     "limit": "a limit",
     "inertia": "an inertia",
 }
+SUM_OF = "sum of "  # before the speed of a way that an error grows with
 _SIGNALS = {"1": "nothing (it is constant)", "t": "the time"}
 LISTED = 3  # names in one cell
 USUAL = 0.5  # chance from which a gap is no larger than usual
@@ -104,17 +105,24 @@ def plain_unit(unit: str) -> str:
 
 def class_in_words(text: str) -> str:
     """ "torque(psi, sgn psi_dot) on elevation" with "a torque that depends on psi and the direction in which psi moves" behind it."""
+    told = dependence_in_words(text)
+    return f"{text}: {told}" if told else text
+
+
+def dependence_in_words(text: str) -> str:
+    """ "a torque that depends on psi and the direction in which psi moves"; empty for a class of no kind."""
     known = parse_class(text)
     if known.kind not in _CLASSES:
-        return text
-    signals = [_signal(entry) for entry in known.depends]
-    return f"{text}: {_CLASSES[known.kind]} that depends on {' and '.join(signals)}"
+        return ""
+    return f"{_CLASSES[known.kind]} that depends on {' and '.join(_signal(entry) for entry in known.depends)}"
 
 
 def _signal(depends: Dependence) -> str:
     name = of = depends.signal
     if depends.by_sign:
         return f"the direction in which {of.removesuffix('_dot')} moves" if of.endswith("_dot") else f"the sign of {of}"
+    if name.startswith(SUM_OF):
+        return f"how far {name.removeprefix(SUM_OF).removesuffix('_dot')} moved at each speed"
     if name.startswith("d") and name.endswith("/dt"):
         return f"how fast {name.removeprefix('d').removesuffix('/dt')} changes"
     if name.endswith("_dot"):

@@ -39,6 +39,10 @@ STIFFER = Note(
         ({"found": (), "unknown": Unknown(0.0)}, "most likely cable spring of the azimuth (93.0 %); but"),
         ({"found": (), "effects": (), "unknown": Unknown(0.97)}, "no effect of the library can be named"),
         (
+            {"found": (), "effects": (), "unknown": Unknown(0.97, "azimuth", "torque(phi_dot) on azimuth")},
+            "does something in the azimuth that the plant file lacks, a torque that depends on how fast phi changes; no effect of",
+        ),
+        (
             {"found": (), "effects": (), "unknown": Unknown(0.01), "note_records": (MOVED,)},
             "nothing else is missing: J_A = 0.0213 (the file states 0.0133).",
         ),

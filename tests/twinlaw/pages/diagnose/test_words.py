@@ -14,6 +14,8 @@ def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
     assert class_in_words("torque(psi, sgn psi_dot) on elevation").endswith(
         "depends on psi and the direction in which psi moves"
     )
+    lost = class_in_words("output(sum of phi_dot) of phi")
+    assert lost.endswith("an error of the reading that depends on how far phi moved at each speed")
     assert class_in_words("dead band of u_V on input") == "dead band of u_V on input"
     kept = Note("something_else_missing", "a.b", {"gain_nats": 0.1, "left_nats": 0.9})
     said = (
