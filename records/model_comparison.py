@@ -6,7 +6,8 @@
 (4)  odds of explained = e^z / (1 + e^d), z = intercept + left ln(1 + left) + favour f, of the likeliest by (2) and (3): what is left
      beside it of what the best and then free forms gain; f is what logs say that were not fitted. d = c / scale - curve - ln of the sum
      of weights by (2) and (3) with a = 0, and of 1 for the plant alone: a free curve of evidence c is one more hypothesis beside them,
-     with log odds of -curve before the data; of what it foretells nobody knows, as it is made of signals as the logs had them
+     with log odds of -curve before the data, where it predicts the logs better than the likeliest: made of signals as the logs had
+     them, it has an advantage there, and what predicts no better for that explains nothing more
 (5)  P_i          = P(explained) weight_i / sum of weights
 
 The rest is an effect's that no candidate explains. Of that the free curve has e^d / (1 + e^d); of what it leaves, where the likeliest has a
@@ -106,7 +107,7 @@ class ComparisonLaw:
         if not shares.any():
             return 0.0
         z = self.intercept + float(np.dot(self.coefficients, features(told, shares)))
-        z -= float(np.logaddexp(0.0, self.curve_logit(told)))
+        z -= float(np.logaddexp(0.0, self.curve_logit(told, shares)))
         return float(0.5 * (1.0 + np.tanh(0.5 * z)))
 
     @property
@@ -114,9 +115,11 @@ class ComparisonLaw:
         """Those of z, in the order of `features`."""
         return (self.left, self.favour)
 
-    def curve_logit(self, told: ModelComparison) -> float:
-        """d of (4): -inf without a free curve."""
-        if told.curve_nats is None:
+    def curve_logit(self, told: ModelComparison, shares: Array) -> float:
+        """d of (4): -inf without a free curve that predicts better."""
+        first = likeliest_of(told, shares)
+        least_nats = told.parameters_ahead_nats if first is None else first.ahead_nats
+        if told.curve_nats is None or told.curve_ahead_nats <= least_nats:
             return -np.inf
         evidence_nats, prior, further, _ = told.columns
         found = self.log_weights(np.array([evidence_nats, prior, further, 0.0 * prior]), told.formed_nats)
@@ -128,11 +131,11 @@ class ComparisonLaw:
         first = likeliest_of(told, shares)
         if first is None:
             return 0.0
-        return self.without_curve(told) * (self.partly_several if first.further else self.partly_single)
+        return self.without_curve(told, shares) * (self.partly_several if first.further else self.partly_single)
 
-    def without_curve(self, told: ModelComparison) -> float:
+    def without_curve(self, told: ModelComparison, shares: Array) -> float:
         """What a free curve leaves of that which no candidate explains."""
-        return float(np.exp(-np.logaddexp(0.0, self.curve_logit(told))))
+        return float(np.exp(-np.logaddexp(0.0, self.curve_logit(told, shares))))
 
 
 def likeliest_of(told: ModelComparison, shares: Array) -> Candidate | None:

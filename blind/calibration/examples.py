@@ -42,7 +42,7 @@ class Example:
         first, place = likeliest_of(self.told, shares), int(np.argmax(shares))
         if first is None or self.right[place]:
             return None
-        return first.further > 0, self.touching[place], law.without_curve(self.told)
+        return first.further > 0, self.touching[place], law.without_curve(self.told, shares)
 
 
 @dataclass(frozen=True)

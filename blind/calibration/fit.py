@@ -119,7 +119,7 @@ def with_explained(law: ComparisonLaw, examples: Sequence[Example], decay: float
     shares = [law.shares(entry.told) for entry in told_of]
     found = np.array([features(entry.told, share) for entry, share in zip(told_of, shares, strict=True)])
     unbiased = replace(law, curve=0.0)
-    logit = np.array([unbiased.curve_logit(entry.told) for entry in told_of])
+    logit = np.array([unbiased.curve_logit(entry.told, share) for entry, share in zip(told_of, shares, strict=True)])
     right = np.array([_share(law, entry) >= LEAST_FOUND for entry in told_of], float)
     mean = np.average(found, axis=0, weights=weight)
     sd = np.sqrt(np.average((found - mean) ** 2, axis=0, weights=weight))

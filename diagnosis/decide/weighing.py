@@ -101,7 +101,7 @@ def weigh(
         _rules(told, first, scale, explained),
         partly,
         told,
-        _ahead_nats(told, explained * shares, (1.0 - explained) * (1.0 - learnt.without_curve(told))),
+        _ahead_nats(told, explained * shares, (1.0 - explained) * (1.0 - learnt.without_curve(told, shares))),
     )
 
 

@@ -33,7 +33,9 @@ def example(rng: np.random.Generator) -> Example:
         for name in ("a.one", "a.two", "a.one + a.two")
     )
     left, curve = float(np.exp(rng.uniform(1.0, 7.0))), gain + scale * rng.normal(0.0, 4.0)
-    told = ModelComparison(candidates, gain, gain, left, rng.uniform(-1.0, 1.0), curve_nats=float(curve))
+    told = ModelComparison(
+        candidates, gain, gain, left, rng.uniform(-1.0, 1.0), curve_nats=float(curve), curve_ahead_nats=99.0
+    )
     p = TRUE.explained(told) * TRUE.shares(told)[:-1]
     drawn = int(np.searchsorted(np.cumsum(p), rng.random()))
     return Example(told, tuple(drawn == place for place in range(3)), (False,) * 3)
@@ -184,7 +186,9 @@ def test_a_smaller_library_explains_less_and_what_it_names_is_wrong() -> None:
 def test_where_no_name_explains_and_forms_and_a_free_curve_do_much_the_law_says_unknown() -> None:
     told = [replace(one, examples=tuple(replace(e, touching=e.right) for e in one.examples)) for one in families(60)]
     found = calibrate(told)
-    nameless = ModelComparison((), 0.0, 0.0, left_nats=4000.0, parameters_nats=0.0, curve_nats=4000.0)
+    nameless = ModelComparison(
+        (), 0.0, 0.0, left_nats=4000.0, parameters_nats=0.0, curve_nats=4000.0, curve_ahead_nats=9.0
+    )
     named = ModelComparison((Candidate("azimuth.tilt", 4000.0, 0.0),), 4000.0, 4000.0, 5.0, 0.8, 0.0)
     assert found.law.explained(nameless) < 0.2 < 0.7 < found.law.explained(named)
 

@@ -55,7 +55,13 @@ def test_a_free_curve_is_a_hypothesis_of_the_same_softmax(nats: float) -> None:
     # Truth by hand, scale 20: beside weights of 90 / 20 and 99 / 20 - 1 - 2, and of none for the plant alone, nothing foretold counting.
     rivals = np.log(np.exp(4.5) + np.exp(1.95) + 1.0)
     odds = np.exp(1.0 - np.log(19.0) + 2.0 * 0.25 - np.logaddexp(0.0, nats / 20.0 - 2.0 - rivals))
-    assert LAW.explained(replace(TOLD, curve_nats=nats)) == pytest.approx(odds / (1.0 + odds))
+    assert LAW.explained(replace(TOLD, curve_nats=nats, curve_ahead_nats=1.0)) == pytest.approx(odds / (1.0 + odds))
+
+
+def test_a_free_curve_that_predicts_no_better_than_the_likeliest_explains_nothing() -> None:
+    # Truth: the likeliest is a.one, which predicts nothing better than the plant alone.
+    assert LAW.explained(replace(TOLD, curve_nats=1e5, curve_ahead_nats=0.0)) == LAW.explained(TOLD)
+    assert LAW.explained(replace(TOLD, curve_nats=1e5, curve_ahead_nats=0.1)) < 0.1
 
 
 def test_where_nothing_was_tried_nothing_explains() -> None:
@@ -85,4 +91,6 @@ def test_a_wrong_name_of_several_effects_is_oftener_right_in_part() -> None:
 def test_of_what_a_free_curve_explains_no_name_is_a_part() -> None:
     # Truth by hand, scale 20: of the rest a curve of 180 nats leaves 1 / (1 + e^(9 - 2) / (e^4.5 + e^1.95 + 1)).
     left = 1.0 / (1.0 + np.exp(7.0) / (np.exp(4.5) + np.exp(1.95) + 1.0))
-    assert LAW.partly(replace(TOLD, curve_nats=180.0), np.array([0.6, 0.4, 0.0])) == pytest.approx(0.1 * left)
+    assert LAW.partly(
+        replace(TOLD, curve_nats=180.0, curve_ahead_nats=1.0), np.array([0.6, 0.4, 0.0])
+    ) == pytest.approx(0.1 * left)

@@ -65,7 +65,7 @@ def test_what_a_free_curve_explains_better_has_no_name(gained: float, nameless: 
     named = explanations(RUB)
     plain = named.nominal
     nothing = np.zeros(0)
-    curve = FittedCurve(None, nothing, nothing, plain_linearisation().case, plain.fit, gained)  # type: ignore[arg-type]
+    curve = FittedCurve(None, nothing, nothing, plain_linearisation().case, plain.fit, gained, 1.0)  # type: ignore[arg-type]
     found = weigh(replace(named, curve=curve), {}, None, LAW)
     assert found.comparison is not None
     assert found.comparison.curve_nats == gained
