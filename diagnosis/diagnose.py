@@ -43,7 +43,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     material = _within_ranges(bound, material)
     seen = seen_of(bound, material)
-    material = replace(material, notes=(*material.notes, *_columns(seen, material.firmware)))
+    material = replace(material, notes=(*material.notes, *_columns(seen, material)))
     noisy, seen = seen, beside_noise(seen)
     if not alarmed(seen.detection.p):
         return _nothing(seen, noisy, material, Exit.NOTHING_SEEN)
@@ -75,11 +75,15 @@ def _within_ranges(bound: BoundPlant, material: Material) -> Material:
     return replace(material, logs=logs, holdout=holdout, notes=(*material.notes, *(end.note for end in ends)))
 
 
-def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:
+def _columns(seen: Seen, material: Material) -> tuple[Note, ...]:
     """What is to be known of the columns of the logs to explain; raises BadInput where they are not what they are called."""
     nominal, where = seen.retuned.fit, "the logs to explain"
-    rows = () if _in_their_rows(firmware) else _rows(seen, where)
-    return (*demand_wiring(seen.case, nominal, plain_fit, where), *rows, *clock_in_doubt(seen.case, nominal))
+    rows = () if _in_their_rows(material.firmware) else _rows(seen, where)
+    return (
+        *demand_wiring(seen.case, nominal, plain_fit, where, material.names),
+        *rows,
+        *clock_in_doubt(seen.case, nominal),
+    )
 
 
 def _rows(seen: Seen, where: str) -> tuple[Note, ...]:
@@ -131,7 +135,7 @@ def _told(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit)
     together = seen.case.with_flights([*seen.case.flights, *seen.checked.flights])
     told, rules = contradicting(together, seen.retuned.fit.hypothesis, [*material.names, *material.holdout_names])
     if told:
-        demand_wiring(seen.checked, plain_fit(seen.checked), plain_fit, "the hold-out")
+        demand_wiring(seen.checked, plain_fit(seen.checked), plain_fit, "the hold-out", material.holdout_names)
     return no_gap(seen.because(*rules), replace(material, notes=(*material.notes, *told)), holdout, reason)
 
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.decide.columns import is_refused
+from diagnosis.decide.columns import is_refused, is_strained
+from diagnosis.decide.turned import turned_within
 from diagnosis.decide.wiring import demand_wiring, likelier_wiring
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.nominal import nominal_fit, plain_fit
@@ -14,6 +15,7 @@ from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
+from tests.diagnosis.arm import arm, arm_log
 from tests.diagnosis.conftest import Fly
 from tests.plants import bound
 from tests.recorded import recorded
@@ -51,7 +53,7 @@ def swapped(log: RunLog, block: str) -> RunLog:
 
 
 def demanded(case: Case) -> None:
-    demand_wiring(case, nominal_fit(case), nominal_fit, "the logs to explain")
+    demand_wiring(case, nominal_fit(case), nominal_fit, "the logs to explain", ["one", "other"])
 
 
 def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(library: EffectLibrary, fly: Fly) -> None:
@@ -59,7 +61,7 @@ def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(library: E
         raise AssertionError("asked")
 
     case = make_case(library, [fly(31, seconds=SECONDS)])
-    demand_wiring(case, nominal_fit(case), never, "the logs to explain")
+    demand_wiring(case, nominal_fit(case), never, "the logs to explain", ["one", "other"])
 
 
 # The first is refused in every suite by the verb: tests/twinlaw/verbs/test_diagnose.py.
@@ -80,13 +82,33 @@ def test_a_slip_of_the_columns_is_refused_by_name(
 def test_a_plant_that_lacks_something_is_not_taken_for_one_wired_wrongly(
     library: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]]
 ) -> None:
-    assert likelier_wiring(make_case(library, [fly(32, effects, SECONDS)]), nominal_fit) is None
+    case = make_case(library, [fly(32, effects, SECONDS)])
+    assert likelier_wiring(case, nominal_fit) is None
+
+
+def test_an_input_whose_sign_turns_within_a_log_is_refused_with_the_log_and_the_time() -> None:
+    """Truth: the arm's input is logged as -u from 2 s to 3 s of the second of two logs; tolerance: three rows."""
+    straight, log = (arm_log(seed=seed, seconds=5.0) for seed in (3, 4))
+    log.u[200:300] *= -1.0
+    case = make_case(effect_library(arm()), [straight, log])
+    named = r"u_V has the wrong sign in other from (1\.9[789]|2|2\.0[123]) s to (2\.9[789]|3|3\.0[123]) s"
+    with pytest.raises(BadInput, match=rf"got {named}.*turn the sign of u_V in other from .*--from"):
+        demand_wiring(case, plain_fit(case), plain_fit, "the logs to explain", ["one", "other"])
+
+
+def test_an_arm_that_lacks_something_has_no_sign_that_turns_though_some_rows_are_likelier_so() -> None:
+    """Truth: dry friction, which the plant lacks; no column is turned."""
+    case = make_case(effect_library(arm()), [arm_log({"arm.coulomb": {"b": 2e-3}}, seed=4, seconds=4.0)])
+    assert is_strained(case, plain_fit(case))
+    assert turned_within(case)
+    assert likelier_wiring(case, plain_fit) is None
 
 
 def test_numbers_without_meaning_are_not_taken_for_a_slip(library: EffectLibrary, fly: Fly) -> None:
     log, rng = fly(33, seconds=SECONDS), np.random.default_rng(3)
     walk = np.cumsum(rng.normal(0.0, 0.004, log.y.shape), axis=0)
-    found = likelier_wiring(make_case(library, [replace(log, y=np.clip(walk, -0.7, 0.7))]), nominal_fit)
+    case = make_case(library, [replace(log, y=np.clip(walk, -0.7, 0.7))])
+    found = likelier_wiring(case, nominal_fit)
     assert found is None or not is_refused(found[1])
 
 
@@ -96,7 +118,7 @@ def test_the_sign_of_an_input_that_the_plant_answers_alike_either_way_is_said_to
     log = recorded("quanser_aero", "yaw_coefficients")
     case = make_case(effect_library(bound("quanser_aero")), [log])
     nominal = plain_fit(case)
-    assert [note.kind for note in demand_wiring(case, nominal, plain_fit, "the log")] == ["sign_unseen"]
+    assert [note.kind for note in demand_wiring(case, nominal, plain_fit, "the log", ["log"])] == ["sign_unseen"]
 
 
 def test_a_turned_sign_that_is_likelier_but_not_surely_is_told() -> None:
@@ -105,7 +127,7 @@ def test_a_turned_sign_that_is_likelier_but_not_surely_is_told() -> None:
 
     def told(log: RunLog) -> list[str]:
         case = make_case(library, [log])
-        return [str(note.said) for note in demand_wiring(case, plain_fit(case), plain_fit, "the log")]
+        return [str(note.said) for note in demand_wiring(case, plain_fit(case), plain_fit, "the log", ["log"])]
 
     assert told(log) == []
     (said,) = told(turned(log, "u", 0))
@@ -130,6 +152,6 @@ def test_a_turned_sign_is_told_of_a_rig_that_is_far_from_its_plant_file_and_no_s
     rows = slice(0, 6000, 3)  # 6 s
     log = replace(whole, t_s=whole.t_s[rows], u=whole.u[rows], y=whole.y[rows], extra={}, sample_period_s=0.003)
     library = effect_library(bound("emps"))
-    demand_wiring(make_case(library, [log]), nominal_fit(make_case(library, [log])), nominal_fit, "the log")
+    demand_wiring(make_case(library, [log]), nominal_fit(make_case(library, [log])), nominal_fit, "the log", ["log"])
     with pytest.raises(BadInput, match=r"(u_V|q_m) has the wrong sign, or (q_m|u_V) has the wrong sign"):
         demanded(make_case(library, [turned(log, "y", 0)]))

@@ -18,7 +18,7 @@ TIME_COLUMN = "t_s"  # of every log, and by chance a symbol as well
 # Names of other things that are written like one of an effect's: module -> what they are, and the words.
 OTHER_THINGS: Mapping[str, tuple[str, set[str]]] = {
     "diagnosis/decide/unknown.py": ("a functional class", {"limit"}),
-    "diagnosis/decide/wiring.py": ("arrays of a filter input", {"r"}),
+    "diagnosis/decide/column_wiring.py": ("arrays of a filter input", {"r"}),
     "diagnosis/experiment/menu.py": ("the unit of a way", {"m"}),
     "diagnosis/experiment/next_experiment.py": ("the unit of a way", {"m"}),
     "diagnosis/filter/filter_input.py": ("arrays of a filter input", {"r"}),

@@ -62,7 +62,7 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
     library, where = effect_library(without_effects(bound)), ", ".join(logs)
     busiest = make_case(library, [where_most_moves(log) for log in logs.values()], stated=bound)
     nominal = plain_fit(busiest)
-    told = demand_wiring(busiest, nominal, plain_fit, where)
+    told = demand_wiring(busiest, nominal, plain_fit, where, list(logs))
     return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)), *clock_in_doubt(busiest, nominal))
 
 
