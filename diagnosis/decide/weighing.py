@@ -155,14 +155,23 @@ def _rules(told: ModelComparison, first: Candidate | None, scale: float, explain
     of = "plant" if first is None else first.effect
     return (
         held_against("told_apart", of, told.gain_nats, scale, "nats", "apart" if told.gain_nats > scale else "alike"),
-        held_against("free_curve", of, told.curve_nats or 0.0, told.gain_nats, "nats", _better(told)),
+        *_curve_rules(told, first, of),
         held_against("forms_left", of, told.left_nats, told.gain_nats, "nats", "counts"),
         held_against("explained", of, explained, decisions.LIKELIER_THAN_NOT, "probability", _odds(explained)),
     )
 
 
-def _better(told: ModelComparison) -> str:
-    return "explains more" if (told.curve_nats or 0.0) > told.gain_nats else "explains less"
+def _curve_rules(told: ModelComparison, first: Candidate | None, of: str) -> tuple[Decision, ...]:
+    """What a free curve gains beside the best, and whether it predicts better than the likeliest; none without one."""
+    if told.curve_nats is None:
+        return ()
+    least_nats = told.parameters_ahead_nats if first is None else first.ahead_nats
+    more = "explains more" if told.curve_nats > told.gain_nats else "explains less"
+    better = "counts" if told.curve_ahead_nats > least_nats else "predicts no better"
+    return (
+        held_against("free_curve", of, told.curve_nats, told.gain_nats, "nats", more),
+        held_against("free_curve_foresees", of, told.curve_ahead_nats, least_nats, "nats", better),
+    )
 
 
 def _odds(explained: float) -> str:
