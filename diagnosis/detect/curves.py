@@ -121,7 +121,8 @@ def _terms(case: Case, s: Signals) -> Iterator[_Term]:
 
 
 def _on_axis(case: Case, axis: str, velocity: str, s: Signals) -> Iterator[_Term]:
-    """Torques by any signal alone, and by one times the axis' own speed or its sign; an inertia that another angle changes."""
+    """Torques by any signal alone, and by one times the axis' own speed or its sign; an inertia that another angle changes. What a rotor's
+    speed does alone to the axis that it pushes is its thrust."""
     q, w, v = _angle(case, axis), _speed(case, axis), s.speed[axis]
     alone, sign = np.ones_like(v), np.tanh(v / REST)
     by_speed = {w.name: (w, v), f"sgn {w.name}": (Quantity(f"sgn({w.name})", ""), sign)}
@@ -138,7 +139,8 @@ def _on_axis(case: Case, axis: str, velocity: str, s: Signals) -> Iterator[_Term
     yield torque(w.name, w, v, True)
     for rotor, speed in s.rotor.items():
         o = _rotor(case, rotor)
-        yield torque(o.name, o, speed, True)
+        if axis not in case.library.bound.model.places.rotors[rotor].thrusts:
+            yield torque(o.name, o, speed, True)
         yield torque(f"d{o.name}/dt", _rate(o), np.gradient(speed, s.t))
         yield from (by(text, o, np.abs(speed)) for text in by_speed)
     yield from (by(text, q, s.angle[axis]) for text in by_speed)

@@ -108,7 +108,7 @@ def shape_section(shape: Shape, place: str, form: str | None) -> Section:
         f"What seems to be missing at {place}, estimated from all logs against {shape.depends.name}, about its mean: "
         "a level would be imitated by the plant's own parameters.",
     ]
-    told += [f"Sparse regression over all forms suggests: {form}."] if form else []
+    told += [f"Sparse regression over forms of that kind suggests: {form}."] if form else []
     return Section(
         "The shape of what is missing", told, plots=(row([panel], [f"{shape.depends.name} [{shape.depends.unit}]"]),)
     )
