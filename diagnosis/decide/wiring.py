@@ -56,11 +56,22 @@ def demand_wiring(
 
 def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[list[ColumnWiring], float] | None:
     """Another reading of the columns under which the plant is likelier, as stated and as fitted, before those that the logs cannot tell
-    from it, of a plant that is the same both ways round either sign; and what it gains in nats. None where there is none."""
+    from it, of a plant that is the same both ways round either sign; and what it gains in nats. None where there is none.
+
+    What holds in all rows is asked of the first, as every rule on columns is: of a sign that turns, all rows tell.
+    """
     within = turned_within(case)
-    asked = case if within else looked_at(case)
+    found = _likelier(case, (*wirings(case), *within), fitted) if within else None
+    if found is not None and found[0][0].rows is not None:
+        return found
+    return _likelier(looked_at(case), tuple(wirings(case)), fitted)
+
+
+def _likelier(
+    asked: Case, readings: Sequence[ColumnWiring], fitted: Callable[[Case], Fit]
+) -> tuple[list[ColumnWiring], float] | None:
+    """The same, of these readings and all rows of the case."""
     least = as_stated(asked)
-    readings = (*wirings(case), *within)
     slips = [(wiring, read) for wiring in readings if as_stated(read := rewired(asked, wiring)) > least]
     usual = fitted_or_none(asked, fitted) if slips else None
     fits = thread_map(lambda slip: fitted_or_none(slip[1], fitted), slips)
