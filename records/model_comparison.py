@@ -117,9 +117,7 @@ class ComparisonLaw:
 
     def curve_logit(self, told: ModelComparison, shares: Array) -> float:
         """d of (4): -inf without a free curve that predicts better."""
-        first = likeliest_of(told, shares)
-        least_nats = told.parameters_ahead_nats if first is None else first.ahead_nats
-        if told.curve_nats is None or told.curve_ahead_nats <= least_nats:
+        if told.curve_nats is None or told.curve_ahead_nats <= ahead_of(told, likeliest_of(told, shares)):
             return -np.inf
         evidence_nats, prior, further, _ = told.columns
         found = self.log_weights(np.array([evidence_nats, prior, further, 0.0 * prior]), told.formed_nats)
@@ -142,6 +140,11 @@ def likeliest_of(told: ModelComparison, shares: Array) -> Candidate | None:
     """The candidate with the largest share; None where parameters alone have a larger one, or there is none."""
     place = int(np.argmax(shares))
     return told.candidates[place] if place < len(told.candidates) else None
+
+
+def ahead_of(told: ModelComparison, first: Candidate | None) -> float:
+    """Nats by which the likeliest predicts the logs better, be it parameters alone."""
+    return told.parameters_ahead_nats if first is None else first.ahead_nats
 
 
 def features(told: ModelComparison, shares: Array) -> tuple[float, ...]:

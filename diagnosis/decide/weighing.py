@@ -17,7 +17,7 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.search.exchange import is_twin
 from diagnosis.search.free_curve import FittedCurve
-from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, law_of, likeliest_of
+from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, ahead_of, law_of, likeliest_of
 from records.reasons import Decision
 
 Array = NDArray[np.float64]
@@ -165,7 +165,7 @@ def _curve_rules(told: ModelComparison, first: Candidate | None, of: str) -> tup
     """What a free curve gains beside the best, and whether it predicts better than the likeliest; none without one."""
     if told.curve_nats is None:
         return ()
-    least_nats = told.parameters_ahead_nats if first is None else first.ahead_nats
+    least_nats = ahead_of(told, first)
     more = "explains more" if told.curve_nats > told.gain_nats else "explains less"
     better = "counts" if told.curve_ahead_nats > least_nats else "predicts no better"
     return (
