@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.clock import clock_in_doubt
-from diagnosis.decide.consequence import curve_foreseen, foreseen, foreseen_rules
+from diagnosis.decide.consequence import curve_foreseen, curve_with_held_out, foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.idle import shares_of, without_idle
@@ -187,7 +187,8 @@ def _judged(
 ) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
     logs = FittedLogs(seen.case)
-    curve = None if curve is None else replace(curve, ahead_nats=curve_foreseen(logs, curve, seen.retuned))
+    if curve is not None:
+        curve = replace(curve, ahead_nats=curve_foreseen(logs, curve.case, curve, seen.retuned.fit.hypothesis))
     ranked = _ranked(seen, material, found, beyond, curve, logs)
     wider = found if not ranked.weighed.fitted else with_twins(seen.case, found, ranked.weighed.fitted[0])
     if wider is not found:
@@ -236,6 +237,7 @@ def _ranked(
     matters_nats = weighed.ahead_nats
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     ahead = fitted_ahead if holdout is None else with_held_out(fitted_ahead, holdout)
+    explanations = explanations if holdout is None else replace(explanations, curve=curve_with_held_out(curve, holdout))
     explanations, idle = without_idle(explanations, shares_of(explanations, ahead, logs, holdout))
     weighed = replace(weigh(explanations, ahead), ahead_nats=matters_nats)
     seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))

@@ -4,10 +4,11 @@
 (2)  ln weight_i  = evidence_i / scale + prior_i - further n_i + ahead a_i, n_i effects beside one, a_i nats of predictions over a second
 (3)  ln weight_p  = evidence_p / scale + ahead a_p, of the plant's own parameters beyond their spread and no effect
 (4)  odds of explained = e^z / (1 + e^d), z = intercept + left ln(1 + left) + favour f, of the likeliest by (2) and (3): what is left
-     beside it of what the best and then free forms gain; f is what logs say that were not fitted. d = c / scale - curve - ln of the sum
-     of weights by (2) and (3) with a = 0, and of 1 for the plant alone: a free curve of evidence c is one more hypothesis beside them,
-     with log odds of -curve before the data, where it predicts the logs better than the likeliest: made of signals as the logs had
-     them, it has an advantage there, and what predicts no better for that explains nothing more
+     beside it of what the best and then free forms gain; f is what logs say that were not fitted.
+     d = min(c / scale - E, ahead (a_c - a)) - curve: a free curve of evidence c and a_c nats of predictions is one more hypothesis, with
+     log odds of -curve before the data, beside the plant alone and all the others, E the log of the sum of 1 and of their weights by (2)
+     and (3) without predictions, a the likeliest's. It follows whatever forms are a little off, row by row, and its signals are those
+     that the logs had: so it must both explain more and predict better
 (5)  P_i          = P(explained) weight_i / sum of weights
 
 The rest is an effect's that no candidate explains. Of that the free curve has e^d / (1 + e^d); of what it leaves, where the likeliest has a
@@ -116,13 +117,15 @@ class ComparisonLaw:
         return (self.left, self.favour)
 
     def curve_logit(self, told: ModelComparison, shares: Array) -> float:
-        """d of (4): -inf without a free curve that predicts better."""
-        if told.curve_nats is None or told.curve_ahead_nats <= ahead_of(told, likeliest_of(told, shares)):
+        """d of (4), -inf without a free curve."""
+        if told.curve_nats is None:
             return -np.inf
         evidence_nats, prior, further, _ = told.columns
         found = self.log_weights(np.array([evidence_nats, prior, further, 0.0 * prior]), told.formed_nats)
         rivals = float(np.logaddexp.reduce(np.append(found, 0.0)))
-        return told.curve_nats / float(self.scale_nats(told.formed_nats)) - self.curve - rivals
+        explains = told.curve_nats / float(self.scale_nats(told.formed_nats)) - rivals
+        predicts = self.ahead * (told.curve_ahead_nats - ahead_of(told, likeliest_of(told, shares)))
+        return min(explains, predicts) - self.curve
 
     def partly(self, told: ModelComparison, shares: Array) -> float:
         """How often a part of a wrong likeliest is right."""

@@ -1,14 +1,20 @@
 """What a name predicts better: some thousand rows make any small thing certain, what changes no prediction is nothing to an engineer."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from diagnosis import decisions
+from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.idle import one_less
 from diagnosis.decide.weighing import Explanations, Weighed
 from diagnosis.decisions import held_against
+from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.evidence import FittedHypothesis
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.free_curve import FittedCurve
 from diagnosis.validate.fitted_logs import FittedLogs
+from diagnosis.validate.judged_logs import JudgedLogs
 from diagnosis.validate.score import score
 from jobs.thread_map import thread_map
 from records.reasons import Decision
@@ -32,10 +38,20 @@ def foreseen(logs: FittedLogs, explanations: Explanations) -> dict[FittedHypothe
     return {entry: readings * gain for entry, gain in zip(asked, gains, strict=True)}
 
 
-def curve_foreseen(logs: FittedLogs, curve: FittedCurve, plain: FittedHypothesis) -> float:
-    """The same of a free curve, of signals as the logs had them: what is missing, not what foretells it."""
-    with_curve = FittedLogs(curve.case).errors(curve.fit.hypothesis)
-    return logs.readings * score(with_curve, logs.errors(plain.fit.hypothesis)).gain
+def curve_foreseen(logs: JudgedLogs, with_curve: Case, curve: FittedCurve, plain: Hypothesis) -> float:
+    """The same of a free curve in `logs` to which it is added, of signals as these had them: what is missing, not what foretells it."""
+    judged = JudgedLogs(with_curve)
+    hypothesis = judged.under_better_noise(curve.fit.hypothesis, plain)
+    return logs.readings * score(judged.errors(hypothesis), logs.errors(plain)).gain
+
+
+def curve_with_held_out(curve: FittedCurve | None, holdout: Holdout) -> FittedCurve | None:
+    """The curve, where there is one, with what it predicts of the hold-out beside what it does of the logs to explain."""
+    if curve is None:
+        return None
+    with_curve = curve.along(linearised(holdout.case, holdout.base.fit))
+    nats = curve_foreseen(holdout.logs, with_curve, curve, holdout.base.fit.hypothesis)
+    return replace(curve, ahead_nats=curve.ahead_nats + nats)
 
 
 def foreseen_rules(foretold: Mapping[FittedHypothesis, float], weighed: Weighed) -> tuple[Decision, ...]:

@@ -167,7 +167,7 @@ def _curve_rules(told: ModelComparison, first: Candidate | None, of: str) -> tup
         return ()
     least_nats = ahead_of(told, first)
     more = "explains more" if told.curve_nats > told.gain_nats else "explains less"
-    better = "counts" if told.curve_ahead_nats > least_nats else "predicts no better"
+    better = "predicts better" if told.curve_ahead_nats > least_nats else "predicts no better"
     return (
         held_against("free_curve", of, told.curve_nats, told.gain_nats, "nats", more),
         held_against("free_curve_foresees", of, told.curve_ahead_nats, least_nats, "nats", better),

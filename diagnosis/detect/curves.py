@@ -7,7 +7,7 @@ are normal and of one variance, f is a random curve whose second differences are
 function of time: what comes and goes is rather noise.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,6 +40,15 @@ class Curve:
     x: tuple[Array, ...]
     values: tuple[Array, ...]
 
+    def along(self, linearisation: Linearisation) -> "Curve":
+        """The same of other logs of the plant: of what these show, by the basis of its own."""
+        asked = self.place, self.class_text
+        each = [
+            next(term for term in terms if (term.place, term.class_text) == asked)
+            for terms in _by_flight(linearisation)
+        ]
+        return _of_logs(each, self.basis, _instants(linearisation))
+
     @property
     def weights(self) -> int:
         """How many it has."""
@@ -69,19 +78,26 @@ class _Term:
 
 def curves(linearisation: Linearisation) -> list[Curve]:
     """All curves for the case's plant, in a fixed order; none of a signal that stands."""
+    found = []
+    for terms in zip(*_by_flight(linearisation), strict=True):
+        basis = _basis(np.concatenate([term.x for term in terms]), terms[0].turns)
+        found += [] if basis is None else [_of_logs(terms, basis, _instants(linearisation))]
+    return found
+
+
+def _by_flight(linearisation: Linearisation) -> list[list[_Term]]:
+    """The terms of all curves by flight, in a fixed order."""
     case = linearisation.case
-    each = [list(_terms(case, signals(linearisation, flight, {}))) for flight in range(len(case.flights))]
-    t_s = tuple(filter_input.t_s for filter_input in linearisation.filter_inputs)
-    found = (_curve(terms, t_s) for terms in zip(*each, strict=True))
-    return [curve for curve in found if curve is not None]
+    return [list(_terms(case, signals(linearisation, flight, {}))) for flight in range(len(case.flights))]
 
 
-def _curve(terms: tuple[_Term, ...], t_s: tuple[Array, ...]) -> Curve | None:
-    first = terms[0]
-    basis = _basis(np.concatenate([term.x for term in terms]), first.turns)
-    if basis is None:
-        return None
-    x = tuple(term.x for term in terms)
+def _instants(linearisation: Linearisation) -> tuple[Array, ...]:
+    return tuple(filter_input.t_s for filter_input in linearisation.filter_inputs)
+
+
+def _of_logs(terms: Sequence[_Term], basis: Callable[[Array], Array], t_s: tuple[Array, ...]) -> Curve:
+    """One curve of each flight's term."""
+    first, x = terms[0], tuple(term.x for term in terms)
     values = tuple(basis(term.x) * term.factor[:, None] for term in terms)
     if first.gathers:
         values = tuple(_gathered(value, own) for value, own in zip(values, t_s, strict=True))

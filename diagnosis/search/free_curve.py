@@ -47,6 +47,10 @@ class FittedCurve:
     evidence: float
     ahead_nats: float = 0.0
 
+    def along(self, linearisation: Linearisation) -> Case:
+        """Other logs of the plant, of which `linearisation` is, with what the curve adds to them."""
+        return _added(linearisation.case, self.curve.along(linearisation), self.b)
+
 
 class _Weights(NamedTuple):
     """Weights to first order: their evidence, their variance s^2, and the step to them."""

@@ -65,14 +65,14 @@ def test_what_a_free_curve_explains_better_has_no_name(gained: float, nameless: 
     named = explanations(RUB)
     plain = named.nominal
     nothing = np.zeros(0)
-    curve = FittedCurve(None, nothing, nothing, plain_linearisation().case, plain.fit, gained, 1.0)  # type: ignore[arg-type]
+    curve = FittedCurve(None, nothing, nothing, plain_linearisation().case, plain.fit, gained, 1e9)  # type: ignore[arg-type]
     found = weigh(replace(named, curve=curve), {}, None, LAW)
     assert found.comparison is not None
     assert found.comparison.curve_nats == gained
     assert found.nameless is nameless
     told = {rule.rule: (rule.value, rule.limit, rule.outcome) for rule in found.decisions if "curve" in rule.rule}
     assert told["free_curve"] == (gained, 400.0, "explains more" if gained > 400.0 else "explains less")
-    assert told["free_curve_foresees"] == (1.0, 0.0, "counts")
+    assert told["free_curve_foresees"] == (1e9, 0.0, "predicts better")
 
 
 def test_parameters_that_leave_their_spread_are_paid_in_full() -> None:

@@ -1,9 +1,13 @@
 """A free curve takes the form of what is missing, with the evidence of a hypothesis like any other; where nothing is, there is none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis import decisions
+from diagnosis.decide.consequence import curve_foreseen, curve_with_held_out
+from diagnosis.decide.holdout import Holdout
 from diagnosis.detect.curves import KNOTS, curves
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.signals import signals
@@ -15,6 +19,8 @@ from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.search.fitting import refined
 from diagnosis.search.free_curve import FittedCurve, free_curve
+from diagnosis.validate.fitted_logs import FittedLogs
+from diagnosis.validate.judged_logs import JudgedLogs
 from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
@@ -85,6 +91,41 @@ def test_a_curve_bends_at_a_bumper_s_edge(dragged: tuple[Case, FittedHypothesis,
         bumper = np.maximum(angle - edge, 0.0) / inertia
         b = np.linalg.lstsq(curve.values[0], bumper, rcond=None)[0]
         assert np.abs(curve.values[0] @ b - bumper).max() < 0.2 * np.ptp(angle) / KNOTS / inertia.min()
+
+
+def test_along_other_logs_a_curve_is_the_same_function_of_what_they_show(
+    stateless: EffectLibrary,
+    fly: Fly,
+    dragged: tuple[Case, FittedHypothesis, Linearisation],
+    found: FittedCurve,
+) -> None:
+    # Truth: along its own logs what it adds is what it was fitted with; along others B(x) b of the speed there, over the moment of inertia.
+    again, first = (case.flights[0].filter_input.added for case in (found.along(dragged[2]), found.case))
+    assert again is not None
+    assert first is not None
+    assert np.array_equal(again.states, first.states)
+    _, _, other = seen(stateless, [fly(2, {}, rig_seed=4)])
+    there = signals(other, 0, {})
+    added = found.along(other).flights[0].filter_input.added
+    assert added is not None
+    rates = (found.curve.basis(there.speed["elevation"]) @ found.b) / there.inertia["elevation"]
+    gathered = np.append(0.0, np.cumsum(np.diff(there.t) * rates[:-1]))
+    assert added.states[:, found.curve.target] == pytest.approx(gathered, abs=1e-12)
+
+
+def test_what_a_curve_predicts_of_a_hold_out_counts_like_what_it_predicts_of_the_fitted_logs(
+    dragged: tuple[Case, FittedHypothesis, Linearisation], found: FittedCurve
+) -> None:
+    # Truth: held out are the logs themselves, so that both predictions are one.
+    case, plain, _ = dragged
+    hypothesis = plain.fit.hypothesis
+    own = curve_foreseen(FittedLogs(case), found.case, found, hypothesis)
+    holdout = Holdout(JudgedLogs(case), ("again",), (None,), FittedHypothesis((), plain.fit, plain.evidence))
+    assert own > 0.0
+    both = curve_with_held_out(replace(found, ahead_nats=own), holdout)
+    assert both is not None
+    assert both.ahead_nats == pytest.approx(2.0 * own, rel=1e-9)
+    assert curve_with_held_out(None, holdout) is None
 
 
 def test_an_encoder_that_loses_counts_above_a_speed_is_a_curve_of_it(
