@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.clock import clock_in_doubt
-from diagnosis.decide.consequence import curve_foreseen, curve_with_held_out, foreseen, foreseen_rules
+from diagnosis.decide.consequence import curve_that_predicts, curve_with_held_out, foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.idle import shares_of, without_idle
@@ -187,8 +187,7 @@ def _judged(
 ) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
     logs = FittedLogs(seen.case)
-    if curve is not None:
-        curve = replace(curve, ahead_nats=curve_foreseen(logs, curve.case, curve, seen.retuned.fit.hypothesis))
+    curve = curve_that_predicts(logs, curve, seen.retuned.fit.hypothesis)
     ranked = _ranked(seen, material, found, beyond, curve, logs)
     wider = found if not ranked.weighed.fitted else with_twins(seen.case, found, ranked.weighed.fitted[0])
     if wider is not found:

@@ -45,6 +45,12 @@ def curve_foreseen(logs: JudgedLogs, with_curve: Case, curve: FittedCurve, plain
     return logs.readings * score(judged.errors(hypothesis), logs.errors(plain)).gain
 
 
+def curve_that_predicts(logs: JudgedLogs, curve: FittedCurve | None, plain: Hypothesis) -> FittedCurve | None:
+    """The curve with what it predicts better of the logs that it was fitted to; None where that is nothing."""
+    nats = 0.0 if curve is None else curve_foreseen(logs, curve.case, curve, plain)
+    return None if curve is None or nats <= 0.0 else replace(curve, ahead_nats=nats)
+
+
 def curve_with_held_out(curve: FittedCurve | None, holdout: Holdout) -> FittedCurve | None:
     """The curve, where there is one, with what it predicts of the hold-out beside what it does of the logs to explain."""
     if curve is None:

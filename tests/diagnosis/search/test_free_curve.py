@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.consequence import curve_foreseen, curve_with_held_out
+from diagnosis.decide.consequence import curve_that_predicts, curve_with_held_out
 from diagnosis.decide.holdout import Holdout
 from diagnosis.detect.curves import KNOTS, curves
 from diagnosis.detect.linearisation import Linearisation, linearised
@@ -119,13 +119,27 @@ def test_what_a_curve_predicts_of_a_hold_out_counts_like_what_it_predicts_of_the
     # Truth: held out are the logs themselves, so that both predictions are one.
     case, plain, _ = dragged
     hypothesis = plain.fit.hypothesis
-    own = curve_foreseen(FittedLogs(case), found.case, found, hypothesis)
+    there = curve_that_predicts(FittedLogs(case), found, hypothesis)
+    assert there is not None
+    own = there.ahead_nats
     holdout = Holdout(JudgedLogs(case), ("again",), (None,), FittedHypothesis((), plain.fit, plain.evidence))
     assert own > 0.0
-    both = curve_with_held_out(replace(found, ahead_nats=own), holdout)
+    both = curve_with_held_out(there, holdout)
     assert both is not None
     assert both.ahead_nats == pytest.approx(2.0 * own, rel=1e-9)
     assert curve_with_held_out(None, holdout) is None
+
+
+def test_a_curve_that_predicts_worse_than_the_plant_alone_is_none(
+    dragged: tuple[Case, FittedHypothesis, Linearisation], found: FittedCurve
+) -> None:
+    # Truth: turned around, it pushes where there is drag.
+    case, plain, linearisation = dragged
+    turned = replace(found, b=-found.b)
+    assert (
+        curve_that_predicts(FittedLogs(case), replace(turned, case=turned.along(linearisation)), plain.fit.hypothesis)
+        is None
+    )
 
 
 def test_an_encoder_that_loses_counts_above_a_speed_is_a_curve_of_it(
