@@ -30,15 +30,21 @@ LEAVE_OUT = ", or leave these rows out: `twinlaw import --from`, `--until`"
 
 
 def demand_wiring(
-    case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where: str, names: Sequence[str]
+    case: Case,
+    nominal: Fit,
+    fitted: Callable[[Case], Fit],
+    where: str,
+    names: Sequence[str],
+    part: Case | None = None,
 ) -> tuple[Note, ...]:
     """What is to be known of the columns: that one may be another, or that these logs do not tell the sign of an input.
 
     Raises BadInput where turning one column's sign, in all rows or in some, or swapping two columns, lets the plant as stated follow the
     logs. `nominal` is the plant's fit to the logs as they are; `fitted` makes such a fit, and is asked only where that one is strained.
-    `where` says which logs they are, `names` what each is called.
+    `where` says which logs they are, `names` what each is called; `part` are the rows by which what holds in all is asked, the first of
+    each log if None.
     """
-    found = likelier_wiring(case, fitted) if is_strained(case, nominal) else None
+    found = likelier_wiring(case, fitted, part) if is_strained(case, nominal) else None
     if found is None:
         return _blind_signs(case, nominal)
     alike, gain = found
@@ -54,17 +60,19 @@ def demand_wiring(
     raise BadInput("columns", where, got, "columns that are what they are called", remedy)
 
 
-def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[list[ColumnWiring], float] | None:
+def likelier_wiring(
+    case: Case, fitted: Callable[[Case], Fit], part: Case | None = None
+) -> tuple[list[ColumnWiring], float] | None:
     """Another reading of the columns under which the plant is likelier, as stated and as fitted, before those that the logs cannot tell
     from it, of a plant that is the same both ways round either sign; and what it gains in nats. None where there is none.
 
-    What holds in all rows is asked of the first, as every rule on columns is: of a sign that turns, all rows tell.
+    What holds in all rows is asked of a `part`, the first if None, as every rule on columns is: of a sign that turns, all rows tell.
     """
     within = turned_within(case)
     found = _likelier(case, (*wirings(case), *within), fitted) if within else None
     if found is not None and found[0][0].rows is not None:
         return found
-    return _likelier(looked_at(case), tuple(wirings(case)), fitted)
+    return _likelier(looked_at(case) if part is None else part, tuple(wirings(case)), fitted)
 
 
 def _likelier(

@@ -35,6 +35,16 @@ def test_a_column_that_is_turned_is_refused_or_doubted_and_no_honest_one() -> No
         demand_columns(arm(), {"a": replace(log, y=-log.y)})
 
 
+def test_an_input_whose_sign_turns_beside_the_rows_in_which_most_moves_is_refused_too() -> None:
+    """Truth: of 42 s of an arm, of which the end tells least, the input is logged as -u from 41 s on."""
+    log = arm_log(seconds=42.0)
+    assert where_most_moves(log).t_s[-1] < 41.0
+    u = log.u.copy()
+    u[4100:] *= -1.0
+    with pytest.raises(BadInput, match=r"u_V has the wrong sign in a from (40\.9\d|41|41\.0\d) s on: "):
+        demand_columns(arm(), {"a": replace(log, u=u)})
+
+
 def test_readings_where_a_sensor_s_range_ends_are_told_and_left_out_of_the_fit_and_of_what_is_predicted() -> None:
     """Truth: an arm's sensor that reads up to 0.8 of the way."""
     log = arm_log(seed=7)

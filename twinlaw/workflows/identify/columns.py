@@ -60,9 +60,12 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
     if not logs:
         return ()
     library, where = effect_library(without_effects(bound)), ", ".join(logs)
-    busiest = make_case(library, [where_most_moves(log) for log in logs.values()], stated=bound)
-    nominal = plain_fit(busiest)
-    told = demand_wiring(busiest, nominal, plain_fit, where, list(logs))
+    whole, busiest = (
+        make_case(library, some, stated=bound)
+        for some in (list(logs.values()), [where_most_moves(log) for log in logs.values()])
+    )
+    nominal = plain_fit(whole)
+    told = demand_wiring(whole, nominal, plain_fit, where, list(logs), busiest)
     return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)), *clock_in_doubt(busiest, nominal))
 
 
