@@ -60,6 +60,12 @@ def _turned(straight: ColumnWiring, name: str) -> ColumnWiring:
     return replace(straight, what=f"{name} has the wrong sign", remedy=f"turn the sign of {name}")
 
 
+def silenced(sign: ColumnWiring) -> ColumnWiring:
+    """The same with the column whose sign is turned read as 0."""
+    inputs, outputs = ([max(one, 0.0) for one in signs] for signs in (sign.input_signs, sign.output_signs))
+    return replace(sign, input_signs=inputs, output_signs=outputs)
+
+
 def _swapped(straight: ColumnWiring, one: str, other: str) -> ColumnWiring:
     return replace(straight, what=f"{one} and {other} stand in each other's place", remedy=f"swap {one} and {other}")
 

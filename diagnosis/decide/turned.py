@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.column_wiring import ColumnWiring, Span, rewired, turned_signs
+from diagnosis.decide.column_wiring import ColumnWiring, Span, rewired, silenced, turned_signs
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis, passes
@@ -39,21 +39,22 @@ def _within(case: Case, sign: ColumnWiring) -> ColumnWiring | None:
 
 
 def _span_of(alone: Case, stated: Hypothesis, sign: ColumnWiring) -> Span:
-    """The rows of one log in which a turned sign lets the plant follow it better."""
+    """The rows of one log in which a turned sign lets the plant follow it better; none where what it is without the column there does: what
+    comes late, or does less than it says, is no turned sign."""
     (flight,) = alone.flights
     straight, turned = _by_row(alone, stated), _by_row(rewired(alone, sign), stated)
     if straight is None or turned is None:
         return NOWHERE
 
-    def likelihood(span: Span) -> float:
-        return likelihood_of(rewired(alone, replace(sign, rows={flight.number: span})), stated)
+    def likelihood(span: Span, wiring: ColumnWiring = sign) -> float:
+        return likelihood_of(rewired(alone, replace(wiring, rows={flight.number: span})), stated)
 
     count = len(straight)
     span = _likeliest(turned - straight)
     for end in (0, 1):
         if 0 < span[end] < count:
             span = _moved(span, end, count, likelihood)
-    return span
+    return span if likelihood(span) > likelihood(span, silenced(sign)) else NOWHERE
 
 
 def _by_row(alone: Case, stated: Hypothesis) -> Array | None:

@@ -46,16 +46,19 @@ def arm_log(
     seconds: float = SECONDS,
     rows: int = 1,
     kick_V: float = 0.0,
+    begins_s: float = 0.0,
     **changed: float,
 ) -> RunLog:
     """A run in open loop under five sines of the input, held for so many rows each; nothing but the encoder and a little torque noise
-    disturbs it. The rig is as stated but for the parameters `changed`; each second one command is larger by `kick_V`."""
+    disturbs it. The rig is as stated but for the parameters `changed`; each second one command is larger by `kick_V`;
+    there is none before `begins_s`."""
     rng = np.random.default_rng(seed)
     t_s = PERIOD_S * np.arange(round(seconds / PERIOD_S))
     rates, phases = rng.uniform(0.5, 6.0, 5), rng.uniform(0.0, 2.0 * np.pi, 5)
     u = 1.8 + 0.28 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)
     u = np.repeat(u[::rows], rows)[: len(t_s)]
     u[:: round(KICKED_S / PERIOD_S)] += kick_V
+    u[t_s < begins_s] = 0.0
     plain = bound("aeroshield", **changed) if changed else arm()
     moving = {name for name in effects or () if library(arm())[name].on_equations}
     shared = AT_NO_SIZE if moving and moving <= AT_NO_SIZE.keys() else {}
