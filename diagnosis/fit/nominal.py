@@ -18,11 +18,6 @@ NOISE_STARTS = tuple(float(decisions.FIRST_PROCESS_NOISE) + by for by in (-1.0, 
 SETTLING_ROUNDS, SETTLED_GAIN = 8, 1.0  # nats: parameters and noises give way to each other by little a round
 
 
-def nominal_fit(case: Case) -> Fit:
-    """The plant re-tuned within its spread, with all noise that then remains, white and with a memory."""
-    return with_memory(case, best_plain_fit(case))
-
-
 def best_plain_fit(case: Case) -> Fit:
     """The likeliest of plain fits that begin at several levels of noise: where axes stick, slopes lead to the next hill only, and the first
     rows alone do not tell which is the highest."""

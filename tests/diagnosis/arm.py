@@ -8,7 +8,6 @@ import numpy as np
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.fit import nominal
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
@@ -17,6 +16,7 @@ from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.simulate import Noise, simulate
+from tests.diagnosis.nominal import nominal_fit
 from tests.plants import bound
 from tests.soak import SOAK
 

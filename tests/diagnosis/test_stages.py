@@ -12,7 +12,6 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.fit.gauss_newton import free_numbers
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.library.sensor_effects import READ_BACK, sensed
@@ -23,6 +22,7 @@ from sim.effect import Effect, EffectParameter, Role
 from sim.paths.output_stages import OutputSteps
 from sim.paths.path import Trace
 from tests.diagnosis.conftest import Fly
+from tests.diagnosis.nominal import nominal_fit
 
 
 @dataclass(frozen=True)

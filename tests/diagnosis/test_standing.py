@@ -5,13 +5,14 @@ from dataclasses import replace
 import pytest
 
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.nominal import nominal_fit, plain_fit, with_memory_of
+from diagnosis.fit.nominal import plain_fit, with_memory_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.beam import Search
 from diagnosis.search.draughts import without_memory
 from diagnosis.standing import is_noise
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
 from tests.diagnosis.decide.test_consequence import explained, seen
+from tests.diagnosis.nominal import nominal_fit
 
 GUST = {"arm.gust": {"sigma": 3e-4, "T": 0.5}}  # a fourteenth of what the arm needs
 RUB = {"arm.coulomb": {"b": 4e-4}}

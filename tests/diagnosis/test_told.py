@@ -18,7 +18,6 @@ from diagnosis.explain.improved import improved_plant
 from diagnosis.explain.notes import notes_of
 from diagnosis.explain.sentences import plain_sentence, sentence, sentences, unseen_effects
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Seen
@@ -28,6 +27,7 @@ from diagnosis.validate.prediction import predictions
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.reasons import Note
 from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
+from tests.diagnosis.nominal import nominal_fit
 
 
 def predicted(before: float, after: float) -> tuple[Predicted, ...]:

@@ -13,12 +13,12 @@ from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Exit, Judged, Seen
 from diagnosis.standing import of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import arm_case, arm_log, settled
+from tests.diagnosis.nominal import nominal_fit
 
 
 def explained(case: Case, plain: FittedHypothesis, effect: str, values: dict[str, float]) -> FittedHypothesis:

@@ -7,11 +7,11 @@ import numpy as np
 from diagnosis.decide.contradiction import contradiction
 from diagnosis.decide.doubt import Doubt, contradicting
 from diagnosis.decide.weighing import Weighed
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.validate.misfit import ignorance
 from records.log import RunLog
 from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 SPRING = {"arm.cable_spring": {"k": 3e-3, "angle_0": 0.0, "h": 0.0}}
 

@@ -15,7 +15,7 @@ from diagnosis.detect.replicas import Tail
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import nominal_fit, plain_fit
+from diagnosis.fit.nominal import plain_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Exit, Judged, Result, Seen
@@ -27,6 +27,7 @@ from sim.added_effects import library
 from sim.bind import BoundPlant
 from tests.diagnosis.arm import arm, arm_case, arm_log
 from tests.diagnosis.conftest import Fly
+from tests.diagnosis.nominal import nominal_fit
 
 TWO_SD = 1.1  # times J_A, which its file states to 5 %
 

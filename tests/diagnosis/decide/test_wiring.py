@@ -10,7 +10,7 @@ from diagnosis.decide.columns import is_refused, is_strained
 from diagnosis.decide.turned import turned_within
 from diagnosis.decide.wiring import demand_wiring, likelier_wiring
 from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.nominal import nominal_fit, plain_fit
+from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput
@@ -18,6 +18,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.arm import arm, arm_log
 from tests.diagnosis.conftest import Fly
+from tests.diagnosis.nominal import nominal_fit
 from tests.plants import bound
 from tests.recorded import recorded
 from tests.replay.firmware_flights import rows_of

@@ -11,11 +11,11 @@ from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.evidence import as_fitted
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from records.log import RunLog
 from sim.bind import bind
 from tests.diagnosis.arm import PERIOD_S, arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 BEGAN_S = 465.645
 WARM = {"rotor.warmup": {"a": 0.25, "T": 4.0, "t_0": 0.0}}

@@ -5,9 +5,9 @@ import pytest
 
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.fit.nominal import nominal_fit
 from sim.added_effects import library
 from tests.diagnosis.arm import arm, arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 LIMIT = {"input.saturation": {"limit": 1.9, "w": 0.05}}
 

@@ -4,9 +4,9 @@ import pytest
 
 from diagnosis.detect.detection import Detection, detect
 from diagnosis.detect.linearisation import linearised
-from diagnosis.fit.nominal import nominal_fit
 from records.log import RunLog
 from tests.diagnosis.arm import arm, arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 
 def detected(log: RunLog) -> Detection:

@@ -10,7 +10,7 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.detect.visibility import cannot_tell, hidden, judged
 from diagnosis.fit.moved import moved_effects, moved_parameters
-from diagnosis.fit.nominal import best_plain_fit, nominal_fit
+from diagnosis.fit.nominal import best_plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
@@ -20,6 +20,7 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.simulate import simulate
 from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
+from tests.diagnosis.nominal import nominal_fit
 from tests.test_project import ROOT
 
 STEP_V = 0.2

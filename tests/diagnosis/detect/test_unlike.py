@@ -6,8 +6,8 @@ import pytest
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.detect.unlike import unlike
-from diagnosis.fit.nominal import nominal_fit
 from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 RUBS = {"arm.coulomb": {"b": 6e-4}}
 FALLS = {"b_s": 6e-4, "v_s": 30.0, "e": 2.0}  # at no speed that is flown: dry friction by another name

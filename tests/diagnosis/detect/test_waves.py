@@ -8,7 +8,6 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.detect.waves import likely_waves, wave_starts
 from diagnosis.diagnose import Material, diagnose
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.fitting import Job, rough
@@ -16,6 +15,7 @@ from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import LONG_S, Fly
+from tests.diagnosis.nominal import nominal_fit
 from tests.soak import sampled
 
 # Truth: 9 and 14 waves a turn, 5 rad/s by the log's clock.

@@ -12,11 +12,11 @@ from diagnosis.explain.error_response import error_responses
 from diagnosis.explain.maps import band_map
 from diagnosis.explain.spectra import averages, coherence
 from diagnosis.fit.gauss_newton import unfitted
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
+from tests.diagnosis.nominal import nominal_fit
 from tests.soak import SOAK, sampled
 
 ROWS, STEP_S = 6000, 0.01

@@ -6,11 +6,11 @@ from diagnosis.decide.unknown import Suspect
 from diagnosis.detect.detection import FormScores, form_scores
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.explain.sparse import Term, form_text, sparse_form, suggestion
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import LONG_S, Fly
+from tests.diagnosis.nominal import nominal_fit
 
 DRAG = 2e-3  # N m s^2
 DRAG_CLASS = Suspect("elevation", "torque(psi_dot) on elevation", 1.0)

@@ -13,7 +13,6 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.filter.filter_input import Added, spread
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, nominal_hypothesis, passes
 from diagnosis.library.effect_library import EffectLibrary, effect_library
@@ -28,6 +27,7 @@ from sim.effect import Role
 from sim.simulate import Noise, simulate
 from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
+from tests.diagnosis.nominal import nominal_fit
 from tests.own_plants import OwnPlant
 from tests.plants import stated_table
 from tests.soak import sampled

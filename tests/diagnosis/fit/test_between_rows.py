@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.between_rows import HELD, between_rows, with_commands
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from records.log import RunLog
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 EVERY = 4  # rows: 40 ms, a twentieth of the fastest sine's period
 

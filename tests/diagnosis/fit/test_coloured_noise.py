@@ -10,13 +10,14 @@ from diagnosis import decisions
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.gauss_newton import fit, likelihood_of
-from diagnosis.fit.nominal import nominal_fit, with_memory
+from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.hypothesis import noise_on, nominal_hypothesis
 from diagnosis.library.reading_noise import ReadingNoise
 from diagnosis.seeing import beside_noise, scored
 from records.log import RunLog
 from sim.effect import Role
 from tests.diagnosis.arm import LONG_S, PERIOD_S, arm, arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 STEP_RAD = 1.150486e-3
 SD_RAD, TIME_S = 2.0 * STEP_RAD, 0.06  # truth: two counts, forgotten in six rows

@@ -9,7 +9,6 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.jitter import jitter_sd, most_shown_s, with_jitter
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
@@ -19,6 +18,7 @@ from sim.added_effects import with_effects
 from sim.bind import BoundPlant
 from sim.loop import fly_law
 from sim.manoeuvres import Manoeuvre, at_rest
+from tests.diagnosis.nominal import nominal_fit
 from tests.plants import stated_table
 from tests.soak import SOAK
 

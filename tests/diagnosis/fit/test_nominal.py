@@ -6,17 +6,11 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import (
-    SETTLED_GAIN,
-    best_plain_fit,
-    nominal_fit,
-    plain_beside,
-    plain_from,
-    with_memory_from,
-)
+from diagnosis.fit.nominal import SETTLED_GAIN, best_plain_fit, plain_beside, plain_from, with_memory_from
 from diagnosis.hypothesis.case import Case
 from diagnosis.seeing import detected
 from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 RUB = {"arm.coulomb": {"b": 1e-5}}
 

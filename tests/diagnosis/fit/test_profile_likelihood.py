@@ -1,10 +1,10 @@
 """The likelihood of some hypotheses."""
 
 from diagnosis.fit.gauss_newton import fit, likelihood_of
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.fit.profile_likelihood import known_to, likeliest, likelihoods
 from sim.effect import Role
 from tests.diagnosis.arm import arm_case, arm_log, plain_linearisation
+from tests.diagnosis.nominal import nominal_fit
 
 
 def test_the_likeliest_of_some_hypotheses_has_the_filters_own_likelihood() -> None:

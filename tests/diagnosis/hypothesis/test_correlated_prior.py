@@ -9,7 +9,6 @@ from diagnosis.decide.contradiction import contradiction
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.evidence import as_fitted
 from diagnosis.fit.gauss_newton import log_prior, prior_chi_squared
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
@@ -21,6 +20,7 @@ from sim.equilibrium import equilibrium
 from sim.loop import closed_loop_log
 from sim.manoeuvres import Manoeuvre
 from sim.simulate import simulate
+from tests.diagnosis.nominal import nominal_fit
 from tests.law_tables import ce150_table
 
 HANG = 0.8

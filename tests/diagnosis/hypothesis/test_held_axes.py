@@ -9,13 +9,13 @@ from diagnosis import decisions
 from diagnosis.detect.detection import form_scores, gains
 from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import Material, diagnose
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.held_axes import with_held
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import SPRING, Fly
+from tests.diagnosis.nominal import nominal_fit
 
 STEP_RAD = 1.534e-3
 

@@ -10,7 +10,6 @@ from diagnosis.diagnose import Material, diagnose
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.evidence import as_fitted
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Result
@@ -18,6 +17,7 @@ from diagnosis.search.retune import retune
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
 from tests.diagnosis.conftest import LONG_S, RIG, SPRING, SPRUNG_SECONDS, Fly
+from tests.diagnosis.nominal import nominal_fit
 
 DRAG = "elevation.quadratic_drag"
 

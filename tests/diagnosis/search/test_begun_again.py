@@ -7,12 +7,12 @@ import pytest
 
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.search.beam import scored_as_stated
 from diagnosis.search.fitting import once_more, refined
 from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 # Truth: the supply gives no more than 2.1 V, of commands of up to 2.9 V.
 LIMIT = {"input.saturation": {"limit": 2.1, "w": 0.05}}

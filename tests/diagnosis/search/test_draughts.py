@@ -9,7 +9,6 @@ from diagnosis.diagnose import Material, diagnose
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.coloured_noise import colour_sd
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.draughts import draught
@@ -18,6 +17,7 @@ from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
 from sim.effects.gust import SINES, TURN
 from tests.diagnosis.conftest import LONG_S, Fly
+from tests.diagnosis.nominal import nominal_fit
 from tests.soak import SOAK
 
 # Truth: 3 mN m, 0.075 of what such an axis can be pushed with and nearly twice what is told as a gust, forgotten in 0.7 s. Every flight has

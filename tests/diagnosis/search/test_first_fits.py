@@ -3,9 +3,9 @@
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.evidence import as_fitted
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.search.beam import alone, first_fits
 from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 NAMES = ["arm.coulomb", "arm.quadratic_drag", "input.deadzone"]
 

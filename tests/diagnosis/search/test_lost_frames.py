@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search import lost_frames
@@ -20,6 +19,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths.input_stages import uniform
 from tests.diagnosis.conftest import Fly
+from tests.diagnosis.nominal import nominal_fit
 
 SHARE = 0.3
 Array = NDArray[np.float64]

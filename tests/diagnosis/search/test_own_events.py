@@ -5,11 +5,11 @@ import pytest
 
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import ELSEWHERE, passes
 from diagnosis.search.own_events import with_own_events
 from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 PUSH = "arm.disturbance"
 PUSHES = ({"torque": 4e-4, "t_0": 6.0, "duration": 1.6}, {"torque": -6e-4, "t_0": 12.5, "duration": 1.2})

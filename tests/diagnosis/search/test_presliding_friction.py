@@ -9,7 +9,6 @@ import pytest
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.presliding_friction import Yielding, changes_names, needed, yielding
@@ -21,6 +20,7 @@ from sim.manoeuvres import flight
 from sim.model import Model
 from tests.diagnosis.arm import arm_case, arm_log
 from tests.diagnosis.conftest import Fly
+from tests.diagnosis.nominal import nominal_fit
 from tests.plants import lively_table
 from tests.soak import SOAK, sampled
 

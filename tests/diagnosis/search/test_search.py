@@ -13,7 +13,6 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.explain.places import place_shares
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
@@ -24,6 +23,7 @@ from sim.added_effects import library
 from sim.bind import BoundPlant
 from sim.effect import Values
 from tests.diagnosis.conftest import Fly
+from tests.diagnosis.nominal import nominal_fit
 
 STEP_V, OFFSET_RAD = 0.107565, -0.0046
 FINELY = 2e-5

@@ -12,7 +12,6 @@ from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.foretold import foretold_nats
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.search.beam import Search, beam_of, with_twins
@@ -21,6 +20,7 @@ from diagnosis.search.fitting import refined
 from diagnosis.search.noise_beside import _own_noise, hardly_told, with_noise_beside, with_noise_of
 from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
+from tests.diagnosis.nominal import nominal_fit
 
 # Truth: the drive lags, and a torque of a seventieth of what the arm needs comes and goes within half a second.
 FIRST_NOISE = -1.5
