@@ -117,11 +117,6 @@ def line_length(message: Message) -> int:
     return HEADER_SIZE + message.size + CRC_SIZE + 2
 
 
-def parse_content(protocol: Protocol, content: bytes) -> Frame | None:
-    """The frame in decoded and checked `content`; None for another protocol version, an unknown type or a wrong length."""
-    return None if foreign(protocol, content) else _unpacked(protocol, content)
-
-
 def foreign(protocol: Protocol, content: bytes, types: frozenset[int] | None = None) -> str | None:
     """The name of what is foreign about checked `content` (header and payload), None for a frame of the protocol."""
     version, code, _ = struct.unpack_from("<BBH", content)

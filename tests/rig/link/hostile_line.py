@@ -9,7 +9,7 @@ from random import Random
 from typing import Any
 
 from records.protocol import PROTOCOL
-from rig.emulator.disturbance import disturb, stick
+from tests.rig.link.disturbance import disturb, stick
 from tests.rig.link.hostile_line_faults import (
     DELIMITER,
     BaudMismatch,
