@@ -1,4 +1,4 @@
-"""The paper's form of the controller, eqs (22) and (27), and the change of basis to the delta form that is generated.
+"""The paper's form of the controller, eq (22), and the change of basis to the delta form that is generated.
 
     Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3,    P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3 (+ p_4 z^-4)      (22), n = 3
 
@@ -11,7 +11,6 @@ of large coefficients, which a rounded table does not keep. What is in brackets 
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -55,14 +54,6 @@ def to_direct(delta: DeltaForm) -> DirectForm:
     order = len(delta.p)
     feedback = np.append(1.0 - delta.p[0], delta.p[1:])
     return DirectForm(q=_binomial(len(delta.q)) @ delta.q, p=np.append(1.0, -_binomial(order) @ feedback))
-
-
-def feedback_V(form: DirectForm, errors_rad: Sequence[float], outputs_V: Sequence[float]) -> float:
-    """Eq (27): sum q_i e(k-i) - sum p_i u_fb(k-i) from errors (n + 1,) of k .. k-n and outputs (order,) of k-1, k-2 ..
-
-    The outputs are those of the feedback alone. The paper writes the total voltage, which multiplies the feed-forward by 1/P(1).
-    """
-    return float(np.dot(form.q, errors_rad) - np.dot(form.p[1:], outputs_V))
 
 
 def controller_poles_z(direct: DirectForm) -> NDArray[np.complex128]:

@@ -108,19 +108,9 @@ def sylvester(b: Array, a: Array, order: int) -> Array:
     return np.stack(columns, axis=1)[1:]
 
 
-def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Placement:
-    """Solve eq (26) for `wanted` (2 n + 1,), or one more with a roll-off; b and a (n + 1,), b_0 = 0, a_0 = 1, ascending powers of z^-1.
-
-    Raises BadInput naming `where` (axis and operating angle) when the system is ill-conditioned or when the controller has a pole
-    outside the unit circle: both would place the poles on paper only.
-    """
-    placement = placed_in_z(b, a, wanted, free)
-    demand_usable(placement, where)
-    return placement
-
-
 def placed_in_z(b: Array, a: Array, wanted: Array, free: FreeDegree) -> Placement:
-    """The same, unjudged. B is divided by max|b|, which takes the condition number of the CE150 from 1e6 to about 50."""
+    """Eq (26) solved for `wanted` (2 n + 1,), or one more with a roll-off, unjudged; b and a (n + 1,), b_0 = 0, a_0 = 1, ascending powers
+    of z^-1. B is divided by max|b|, which takes the condition number of the CE150 from 1e6 to about 50."""
     states = len(a) - 1
     scale, order = float(np.max(np.abs(b))), len(wanted) - 1 - states
     unscale = np.array([1.0] * order + [1.0 / scale] * (states + 1))
@@ -146,7 +136,8 @@ def placed_in_gamma(plant: PlantPolynomials, poles_rad_s: Sequence[complex], fre
 
 
 def demand_usable(placement: Placement, where: str) -> None:
-    """Raise BadInput naming `where` for a controller that places the poles on paper only."""
+    """Raise BadInput naming `where` (axis and operating angle) when the system is ill-conditioned or when the controller has a pole outside
+    the unit circle: both would place the poles on paper only."""
     if not placement.is_sound:
         raise BadInput(
             "pole placement, eq (26)",

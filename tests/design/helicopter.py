@@ -11,6 +11,7 @@ from design.discretise import SampledPlant, sample
 from design.linearise import linearise, subsystem
 from design.loop import PlantPolynomials, plant_polynomials
 from design.operating_points import design_points
+from design.pole_placement import FreeDegree, Placement, demand_usable, placed_in_z
 from design.settings import AxisSettings, DesignSettings, read_settings
 from design.table import make_table
 from records.plant import load_plant
@@ -84,6 +85,13 @@ def sampled(axis: str, psi_rad: float) -> SampledPlant:
     """The sampled plant of one axis at an elevation."""
     linear = linearise(helicopter(), equilibrium(helicopter(), psi_rad))
     return sample(subsystem(helicopter(), linear, base_settings().loop(axis)), SAMPLE_PERIOD_S)
+
+
+def place(b: np.ndarray, a: np.ndarray, wanted: np.ndarray, free: FreeDegree, where: str) -> Placement:
+    """Eq (26) solved in powers of z^-1, and judged."""
+    placement = placed_in_z(b, a, wanted, free)
+    demand_usable(placement, where)
+    return placement
 
 
 def wide_angles() -> np.ndarray:

@@ -8,12 +8,12 @@ from design.direct_form import to_delta
 from design.discretise import sample
 from design.linearise import linearise, subsystem
 from design.loop import plant_polynomials
-from design.pole_placement import FREE_DEGREES, characteristic, place, poles_z, refined
+from design.pole_placement import FREE_DEGREES, characteristic, poles_z, refined
 from design.transfer import transfer_function
 from records.loops import LOOPS
 from records.table import AXES
 from sim.equilibrium import equilibrium
-from tests.design.helicopter import DOM2, SAMPLE_PERIOD_S, helicopter
+from tests.design.helicopter import DOM2, SAMPLE_PERIOD_S, helicopter, place
 
 DIGITS = 40
 

@@ -1,11 +1,11 @@
 """Laws that the seed's text, or habit, suggests and that fail: each is the true law with one thing changed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from design.direct_form import DirectForm, feedback_V, to_direct
+from design.direct_form import DirectForm, to_direct
 from design.law import polynomial, saturate
 from design.schedule import evaluate, schedule_of
 from records.table import AxisLaw, ControllerTable
@@ -68,7 +68,7 @@ class DirectLaw:
         within = float(np.clip(psi_rad, self.table.schedule.min_rad, self.table.schedule.max_rad))
         axis.forms = [to_direct(evaluate(schedule_of(law), within)), *axis.forms][:4]
         errors = (axis.x[1] - angle, *axis.errors)
-        v = feedback_V(self._form(axis), errors, axis.outputs)
+        v = _feedback_V(self._form(axis), errors, axis.outputs)
         feedforward = polynomial(law.feedforward_V, feedforward_at)
         u = saturate(law, v + feedforward)
         axis.errors = errors[:3]
@@ -81,3 +81,11 @@ class DirectLaw:
             return axis.forms[0]
         past = [axis.forms[min(i, len(axis.forms) - 1)] for i in range(4)]
         return DirectForm(np.array([past[i].q[i] for i in range(4)]), np.array([past[i].p[i] for i in range(4)]))
+
+
+def _feedback_V(form: DirectForm, errors_rad: Sequence[float], outputs_V: Sequence[float]) -> float:
+    """Eq (27): sum q_i e(k-i) - sum p_i u_fb(k-i) from errors (n + 1,) of k .. k-n and outputs (order,) of k-1, k-2 ..
+
+    The outputs are those of the feedback alone. The paper writes the total voltage, which multiplies the feed-forward by 1/P(1).
+    """
+    return float(np.dot(form.q, errors_rad) - np.dot(form.p[1:], outputs_V))
