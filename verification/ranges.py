@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from codegen.law_equations import axis_state
-from codegen.law_frame import LawInput, LawState, words_from_state
+from codegen.law_frame import LawInput, LawState
 from codegen.scales import FASTEST_RAD_S
 from records.table import AxisLaw, ControllerTable
 
@@ -46,7 +45,7 @@ def declared_ranges(table: ControllerTable, motion: Motion) -> LawRanges:
         |w| <= span of the limits           |delta w| <= 2 |w|                        |delta^2 w| <= 2 |delta w|
         v = s + w
 
-    A step that starts outside, after a harder saturation say, is not covered; `share_within` tells how many of a flight's did.
+    A step that starts outside, after a harder saturation say, is not covered.
     """
     limits_rad = [limit + axis.resolution_rad for limit, axis in zip(motion.limits_rad, table.axes, strict=True)]
     errors_rad = tuple(
@@ -57,13 +56,6 @@ def declared_ranges(table: ControllerTable, motion: Motion) -> LawRanges:
     angles_rad = tuple(_around_zero(limit_rad) for limit_rad in limits_rad)
     references_rad = tuple(_reference(axis) for axis in table.axes)
     return LawRanges(LawState(axes, angles_rad, references_rad), LawInput(references_rad, angles_rad), errors_rad)
-
-
-def share_within(ranges: LawRanges, states: NDArray[np.uint32]) -> float:
-    """Share of float32 states, bits [n, words], all of whose numbers lie within the ranges."""
-    low, high = np.array([*words_from_state(ranges.state)]).T
-    numbers = states.view(np.float32).astype(np.float64)
-    return float(np.mean(np.all((numbers >= low) & (numbers <= high), axis=-1)))
 
 
 def _error_ranges(table: ControllerTable, axis: AxisLaw, limit_rad: float, rate_rad_s: float) -> tuple[Range, ...]:

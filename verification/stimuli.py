@@ -158,12 +158,6 @@ def at_the_bound(table: ControllerTable) -> Stimulus:
     return _from_rest("bound", _bits(accepted[np.newaxis]), _bits(states))
 
 
-def replayed(name: str, *series_rad: Numbers) -> Stimulus:
-    """Recorded or made-up series of equal length of all references, then all angles, one lane."""
-    inputs = np.stack(series_rad, axis=-1)[:, np.newaxis].astype(np.float32)
-    return _from_rest(name, _bits(inputs))
-
-
 def _from_rest(name: str, inputs: Bits, states: Bits | None = None) -> Stimulus:
     """Lanes that begin at rest at the angles of their first row, or in `states`."""
     return Stimulus(name, inputs[0, :, inputs.shape[-1] // 2 :].copy(), inputs, states)

@@ -22,7 +22,6 @@ from verification.stimuli import (
     Stimulus,
     from_random_bits,
     reference_jumps,
-    replayed,
     sequences,
     standard_stimuli,
 )
@@ -248,4 +247,7 @@ def _recorded(folder: Path) -> Stimulus:
     series = [loadmat(folder / f"measured_{name}.mat")[f"measured_{name}"] for name in ("pitch", "yaw")]
     pitch, yaw = (np.asarray(rows)[1, ::5].astype(np.float32) for rows in series)  # 2 ms -> 10 ms
     later = 100
-    return replayed("quanser_aero model_verification", pitch[later:], yaw[later:], pitch[:-later], yaw[:-later])
+    inputs = np.stack([pitch[later:], yaw[later:], pitch[:-later], yaw[:-later]], axis=-1)[:, np.newaxis].view(
+        np.uint32
+    )
+    return Stimulus("quanser_aero model_verification", inputs[0, :, 2:].copy(), inputs)

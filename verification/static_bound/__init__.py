@@ -3,7 +3,6 @@
 from verification.static_bound.bound import LoopPasses as LoopPasses
 from verification.static_bound.bound import PathShare as PathShare
 from verification.static_bound.bound import StaticBound as StaticBound
-from verification.static_bound.bound import exception_stack_bytes as exception_stack_bytes
 from verification.static_bound.bound import static_bound as static_bound
 from verification.static_bound.kept import kept_bound as kept_bound
 from verification.static_bound.routines import LoopBound as LoopBound

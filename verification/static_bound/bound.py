@@ -18,9 +18,6 @@ from verification.static_bound.loop_nest import LoopNest, loop_nest
 from verification.static_bound.routines import FLOAT_RESULTS, LoopBound, cases, finite_parts
 from verification.static_bound.words import TOP, Word, join
 
-EXCEPTION_FRAME_BYTES = 32  # eight words, DDI0419 B1.5.6
-EXCEPTION_PADDING_BYTES = 4  # the frame is aligned to eight bytes
-
 
 @dataclass(frozen=True)
 class PathShare:
@@ -66,12 +63,6 @@ def static_bound(elf: bytes, function: str, loop_bounds: Sequence[LoopBound] = (
     return StaticBound(
         function, summary.cycles.zero_wait, summary.cycles.two_wait, summary.stack_bytes, shares, analysis.loops(shares)
     )
-
-
-def exception_stack_bytes(elf: bytes, handlers: Sequence[str]) -> int:
-    """Stack that interrupts add on top of any depth, when each of `handlers` may pre-empt the one before (one per priority level)."""
-    frame = EXCEPTION_FRAME_BYTES + EXCEPTION_PADDING_BYTES
-    return sum(frame + static_bound(elf, handler).stack_bytes for handler in handlers)
 
 
 @dataclass

@@ -7,7 +7,7 @@ import pytest
 from records.errors import BadInput, VerificationFailed
 from rig.emulator.board import EmulatedBoard
 from tests.verification.static_bound.static_programs import INSTRUCTIONS, RETURN_CYCLES, instruction_name, program
-from verification.static_bound import LoopBound, exception_stack_bytes, exploration, static_bound, thumb_cycles
+from verification.static_bound import LoopBound, exploration, static_bound, thumb_cycles
 
 SCRATCH = 0x20000100
 
@@ -111,10 +111,6 @@ def test_a_stated_loop_bound_is_used_and_its_reason_kept(elf: bytes) -> None:
     bound = static_bound(elf, "passes_by_argument", (stated,))
     assert bound.cycles_bound == 20 + 19 * 2 + 1 + 2
     assert [(loop.passes, loop.reason) for loop in bound.loops] == [(20, "callers count to 20")]
-
-
-def test_handlers_that_nest_add_their_frames(elf: bytes) -> None:
-    assert exception_stack_bytes(elf, ["inner", "empty"]) == (36 + 40) + (36 + 0)
 
 
 @pytest.mark.parametrize("content", [b"", b"\x7fELF nothing else", b"MZ" + bytes(200)])
