@@ -142,7 +142,6 @@ class Protocol:
 
 HEADER_SIZE = 4
 CRC_SIZE = 4
-MAX_PAYLOAD_SIZE = 254 - HEADER_SIZE - CRC_SIZE  # one COBS block: one byte of overhead, whatever the payload
 
 
 def canonical_text(protocol: Protocol) -> str:

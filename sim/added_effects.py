@@ -109,11 +109,6 @@ def with_values(bound: BoundPlant, values: Sizes) -> BoundPlant:
     return replace(bound, plant=plant, p=p, effects=changed, input_path=inputs, output_path=outputs)
 
 
-def effect_values(bound: BoundPlant) -> dict[str, dict[str, float]]:
-    """The values of the plant's effects, as with_effects takes them."""
-    return plain_values(bound.effects)
-
-
 def coefficient_index(bound: BoundPlant, effect: str, symbol: str) -> int:
     """The place in `p` of a parameter of an effect on the equations; its column's name is coefficient(effect, symbol)."""
     names = [str(entry) for entry in bound.model.parameter_symbols]

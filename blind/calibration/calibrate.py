@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from blind.calibration.examples import Example, Family
-from blind.calibration.fit import log_loss, of_shares, with_explained
+from blind.calibration.fit import fit, log_loss, of_shares, with_explained
 from blind.scoring.statistics import calibration_error, honest_error, reliability
 from records.errors import BadInput
 from records.model_comparison import ComparisonLaw
@@ -50,7 +50,7 @@ def calibrate(families: Sequence[Family]) -> Calibration:
     decay = min(reversed(DECAYS), key=lambda tried: _together(families, laws[tried]))
     left_out = laws[decay]
     examples = [entry for one in families for entry in one.examples]
-    law = with_explained(of_shares(examples), examples, decay)
+    law = fit(examples, decay)
     told = [_firsts(other, one.examples) for other, one in zip(left_out, families, strict=True)]
     said = [entry.stated for entry in examples if entry.stated is not None]
     return Calibration(

@@ -39,12 +39,6 @@ def pairs(data: Deviations) -> Pairs:
     return Pairs(io.reshape(-1, io.shape[2]), data.x[:, 1:].reshape(-1, data.x.shape[2]))
 
 
-def batch(rows: Pairs, forgetting: float = 1.0) -> Array:
-    """theta by (2.17) with the weights gamma^(s - k) of (2.12), all rows at once."""
-    weight = np.sqrt(forgetting ** np.arange(len(rows.io) - 1, -1, -1.0))[:, None]
-    return np.asarray(np.linalg.lstsq(weight * rows.io, weight * rows.after, rcond=None)[0])
-
-
 def start(states: int, inputs: int, large: float = LARGE) -> Recursion:
     """Step (2) of the algorithm: P large and diagonal, theta zero."""
     return Recursion(np.zeros((states + inputs, states)), large * np.eye(states + inputs))

@@ -14,7 +14,7 @@ from identification.envelope.state_equation.initial_state import (
     by_hand,
     over_grid,
 )
-from identification.envelope.state_equation.recursive import batch, pairs
+from identification.envelope.state_equation.recursive import history, pairs
 
 # A pair of eigenvalues of modulus 1.002 and a period of 2 pi / 0.06 samples, as a phugoid's.
 TRUTH = Model(
@@ -66,7 +66,7 @@ def test_the_optimisation_finds_the_system_from_a_start_that_diverges():
 def test_noise_biases_one_step_estimates_and_not_the_free_run():
     """Errors in the regressors pull least squares towards zero: the one-step model damps, the other keeps the eigenvalues."""
     data = flown(2.0)
-    open_loop = model_of(batch(pairs(data)), 0.05)
+    open_loop = model_of(history(pairs(data))[-1], 0.05)
     closed = optimise(open_loop, data, MARGINS).model
     assert open_loop.spectral_radius < TRUTH.spectral_radius - 3e-3
     assert abs(closed.spectral_radius - TRUTH.spectral_radius) < 1e-3
@@ -74,7 +74,7 @@ def test_noise_biases_one_step_estimates_and_not_the_free_run():
 
 def test_a_drift_is_not_taken_for_dynamics():
     data = flown(0.02, drift=0.001)
-    found = optimise(model_of(batch(pairs(data)), 0.05), data, MARGINS)
+    found = optimise(model_of(history(pairs(data))[-1], 0.05), data, MARGINS)
     assert pytest.approx(TRUTH.A, abs=1e-4) == found.model.A
     assert found.own.drift == pytest.approx(np.full((3, 2), 0.001), abs=2e-4)
 
