@@ -11,6 +11,7 @@ from diagnosis.decide.column_wiring import ColumnWiring, Span, rewired, silenced
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis, passes
+from diagnosis.validate.prediction import WINDOW_S
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
@@ -39,8 +40,9 @@ def _within(case: Case, sign: ColumnWiring) -> ColumnWiring | None:
 
 
 def _span_of(alone: Case, stated: Hypothesis, sign: ColumnWiring) -> Span:
-    """The rows of one log in which a turned sign lets the plant follow it better; none where what it is without the column there does: what
-    comes late, or does less than it says, is no turned sign."""
+    """The rows of one log in which a turned sign lets the plant follow it better; none where they begin and end within a second, in which
+    nobody plugs in and back, or the plant follows it better yet without the column there: what comes late, or does less than it says, is
+    no turned sign."""
     (flight,) = alone.flights
     straight, turned = _by_row(alone, stated), _by_row(rewired(alone, sign), stated)
     if straight is None or turned is None:
@@ -54,7 +56,9 @@ def _span_of(alone: Case, stated: Hypothesis, sign: ColumnWiring) -> Span:
     for end in (0, 1):
         if 0 < span[end] < count:
             span = _moved(span, end, count, likelihood)
-    return span if likelihood(span) > likelihood(span, silenced(sign)) else NOWHERE
+    t_s, (since, until) = flight.log.t_s, span
+    is_brief = since > 0 and until < count and t_s[until] - t_s[since] < WINDOW_S
+    return NOWHERE if is_brief or likelihood(span) <= likelihood(span, silenced(sign)) else span
 
 
 def _by_row(alone: Case, stated: Hypothesis) -> Array | None:

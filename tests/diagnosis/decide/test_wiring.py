@@ -110,6 +110,20 @@ def comes_late() -> RunLog:
     return log
 
 
+def lasts(rows: int) -> RunLog:
+    """The input is logged as -u for so many rows."""
+    log = arm_log(seed=4, seconds=5.0)
+    log.u[200 : 200 + rows] *= -1.0
+    return log
+
+
+def test_what_turns_and_turns_back_within_a_second_is_no_sign_that_somebody_turned() -> None:
+    """Truth: nobody plugs in and back so fast; 0.9 s and 1.1 s, tolerance: three rows."""
+    brief, long = (turned_within(make_case(effect_library(arm()), [lasts(rows)])) for rows in (90, 110))
+    assert not brief
+    assert [abs(edge - truth) <= 3 for edge, truth in zip(long[0].rows[0], (200, 310), strict=True)] == [True, True]
+
+
 @pytest.mark.parametrize("lacking", [rubs, comes_late])
 def test_an_arm_that_lacks_something_has_no_sign_that_turns(lacking: Callable[[], RunLog]) -> None:
     """Truth: no column is turned; though some rows may be likelier so, they are likelier still without the column."""
