@@ -3,7 +3,7 @@
 (1)  scale        = e^size (1 + formed)^power, nats that forms a little off the truth may cost: more where more is explained by them
 (2)  ln weight_i  = evidence_i / scale + prior_i - further n_i + ahead a_i, n_i effects beside one, a_i nats of predictions over a second
 (3)  ln weight_p  = evidence_p / scale + ahead a_p, of the plant's own parameters beyond their spread and no effect
-(4)  odds of explained = e^z / (1 + e^d), z = intercept + left ln(1 + left) + favour f, of the likeliest by (2) and (3): what is left
+(4)  odds of explained = e^z / (1 + e^d), z = intercept + left ln(1 + left / 5) + favour f, of the likeliest by (2) and (3): what is left
      beside it of what the best and then free forms gain; f is what logs say that were not fitted.
      d = min(c / scale - E, ahead (a_c - a)) - curve: a free curve of evidence c and a_c nats of predictions is one more hypothesis, with
      log odds of -curve before the data, beside the plant alone and all the others, E the log of the sum of 1 and of their weights by (2)
@@ -23,6 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+# Nats that the best of some three hundred free forms gains of noise alone, ln 300 = 5.7: less says nothing of what is left.
+LEFT_BY_CHANCE = 5.0
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,7 @@ def features(told: ModelComparison, shares: Array) -> tuple[float, ...]:
     first = likeliest_of(told, shares)
     evidence_nats = told.parameters_nats if first is None else first.evidence_nats
     left_nats = told.left_nats + max(told.gain_nats - max(evidence_nats or 0.0, 0.0), 0.0)
-    return (float(np.log1p(left_nats)), told.favour or 0.0)
+    return (float(np.log1p(left_nats / LEFT_BY_CHANCE)), told.favour or 0.0)
 
 
 def law_of(numbers: Mapping[str, Any]) -> ComparisonLaw:

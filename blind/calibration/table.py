@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from blind.calibration.calibrate import Calibration, Quality
+from records.model_comparison import LEFT_BY_CHANCE
 
 
 def law_text(found: Calibration, commit: str) -> str:
@@ -47,7 +48,7 @@ def law_told(found: Calibration) -> str:
     law = found.law
     return (
         f"scale {np.exp(law.size):.2f} (1 + formed)^{law.power:.3f} nats; a further effect {law.further:.2f}; a nat ahead {law.ahead:.3f}\n"
-        f"logit of explained = {law.intercept:.3f} {law.left:+.3f} ln(1 + left) {law.favour:+.3f} favour; "
+        f"logit of explained = {law.intercept:.3f} {law.left:+.3f} ln(1 + left / {LEFT_BY_CHANCE:g}) {law.favour:+.3f} favour; "
         f"against a free curve {law.curve:.2f}; weight decay {found.decay:g}; "
         f"a wrong name is right in part {law.partly_single:.2f} of one effect, "
         f"{law.partly_several:.2f} of several"

@@ -39,29 +39,29 @@ def test_shares_are_a_softmax_of_evidence_prior_further_effects_and_what_is_fore
 
 def test_whether_anything_explains_is_a_logistic_law_of_what_is_left() -> None:
     # Truth by hand: the first gains 90 of 99 nats, and 9 + 9 are left beside it.
-    z = 1.0 - np.log(19.0) + 2.0 * 0.25
+    z = 1.0 - np.log(1.0 + 18.0 / 5.0) + 2.0 * 0.25
     assert LAW.explained(TOLD) == pytest.approx(1.0 / (1.0 + np.exp(-z)))
     joint = replace(TOLD, candidates=(replace(ONE, evidence_nats=0.0), TWO))
-    z = 1.0 - np.log(10.0) + 2.0 * 0.25
+    z = 1.0 - np.log(1.0 + 9.0 / 5.0) + 2.0 * 0.25
     assert LAW.explained(joint) == pytest.approx(1.0 / (1.0 + np.exp(-z)))
-    assert features(TOLD, np.array([0.6, 0.4, 0.0])) == pytest.approx((np.log(19.0), 0.25))
+    assert features(TOLD, np.array([0.6, 0.4, 0.0])) == pytest.approx((np.log(1.0 + 18.0 / 5.0), 0.25))
     assert features(replace(TOLD, favour=None), np.array([0.4, 0.6, 0.0]))[1:] == (0.0,)
     parameters = features(replace(TOLD, parameters_nats=60.0), np.array([0.2, 0.2, 0.6]))
-    assert parameters == pytest.approx((np.log(49.0), 0.25))
+    assert parameters == pytest.approx((np.log(1.0 + 48.0 / 5.0), 0.25))
 
 
 @pytest.mark.parametrize("nats", [-500.0, 70.0, 90.0, 150.0, 1e5])
 def test_a_free_curve_is_a_hypothesis_of_the_same_softmax(nats: float) -> None:
     # Truth by hand, scale 20: beside weights of 90 / 20 and 99 / 20 - 1 - 2, and of none for the plant alone, nothing foretold counting.
     rivals = np.log(np.exp(4.5) + np.exp(1.95) + 1.0)
-    odds = np.exp(1.0 - np.log(19.0) + 2.0 * 0.25 - np.logaddexp(0.0, nats / 20.0 - 2.0 - rivals))
+    odds = np.exp(1.0 - np.log(1.0 + 18.0 / 5.0) + 2.0 * 0.25 - np.logaddexp(0.0, nats / 20.0 - 2.0 - rivals))
     assert LAW.explained(replace(TOLD, curve_nats=nats, curve_ahead_nats=1e9)) == pytest.approx(odds / (1.0 + odds))
 
 
 @pytest.mark.parametrize("nats", [-30.0, 0.0, 4.0, 30.0])
 def test_a_free_curve_counts_by_what_it_predicts_better_where_that_is_less(nats: float) -> None:
     # Truth by hand: the likeliest, a.one, predicts nothing better than the plant alone; 0.5 a nat, and log odds of -2 before the data.
-    odds = np.exp(1.0 - np.log(19.0) + 2.0 * 0.25 - np.logaddexp(0.0, 0.5 * nats - 2.0))
+    odds = np.exp(1.0 - np.log(1.0 + 18.0 / 5.0) + 2.0 * 0.25 - np.logaddexp(0.0, 0.5 * nats - 2.0))
     assert LAW.explained(replace(TOLD, curve_nats=1e5, curve_ahead_nats=nats)) == pytest.approx(odds / (1.0 + odds))
 
 
@@ -76,7 +76,7 @@ def test_parameters_alone_may_explain() -> None:
     alone = ModelComparison((), 60.0, 0.0, 5.0, None, 60.0)
     assert LAW.shares(alone).tolist() == [1.0]
     assert likeliest_of(alone, LAW.shares(alone)) is None
-    assert LAW.explained(alone) == pytest.approx(1.0 / (1.0 + np.exp(-(1.0 - np.log(6.0)))))
+    assert LAW.explained(alone) == pytest.approx(1.0 / (1.0 + np.exp(-(1.0 - np.log(1.0 + 5.0 / 5.0)))))
 
 
 def test_where_parameters_alone_are_likelier_no_name_is_the_likeliest() -> None:
