@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from identification import thresholds
 from records.deciding import Count, Counts, Decides, Limit, Limits, deciding
 from records.errors import BadInput
 from records.reasons import Decision
@@ -60,6 +61,8 @@ GRID_OVERTONE = Limit(
     "share of the highest peak",
     "a slower one as high is the grid's own: overtones of a grid that is read without noise are as high as it",
 )
+
+PLAY_CHANGES = Count(3, "changes", "of a reading behind play: fewer say nothing of how long it usually takes")
 
 # Where a log begins (hypothesis)
 UNTOLD_S = Limit(
@@ -146,9 +149,6 @@ PLAIN_TO_SEE = Limit(
     "160 development cases, seed 21; of 23 sealed cases below, predictions of rigs without effects gain 5 nats at most, effects of two "
     "floors and more 45 to 178, but for a backlash that predicts nothing better",
 )
-BEGINNING_ROWS = Count(
-    2500, "rows", "of a log, by which noise is first estimated: its few numbers are known to some per cent from those"
-)
 MATTERS = Limit(
     0.04,
     "nats a reading",
@@ -196,9 +196,6 @@ LEAST_LEFT_SHARE = Limit(
 )
 REPLICAS = Count(48, "replicas", "two moments of a Gumbel law need no more", DEVELOPMENT)
 BLIND_SHARE = Limit(0.6, "share of the library", "with more of it unseen the data cannot tell")
-EVENT_GRID_S = Limit(0.3, "s", "spacing of the steps in time that are scored", DEVELOPMENT)
-LEAST_EVENT_STEPS = Count(4, "steps", "of a log shorter than a second: fewer tell no pulse from a step")
-MOST_EVENT_STEPS = Count(200, "steps", "no more for long logs: time", DEVELOPMENT)
 NEAR_PERIODS = Limit(
     3.0, "periods", "a frequency nearer to the motion's own, over a whole log, would be drawn to it", "EMPS"
 )
@@ -210,10 +207,7 @@ OWN_MOTION_SHARE = Limit(
     "EMPS",
 )
 MOST_PARTS = Count(5, "parts of a period", "or with a second to fifth of it", "EMPS")
-MOST_WAVES = Count(48, "waves a turn", "that are tried", "seed 900014")
 WAVES_APART = Limit(0.12, "share", "waves that are closer are one", "seed 900014")
-MOST_STARTS = Count(8, "starts", "of an effect's shapes that are scored")
-FARTHEST_SIZE = Limit(30.0, "references", "a score test proposes no larger size")
 
 # What is fitted (search)
 SINGLES = Count(7, "effects", "single effects that are fitted: time", DEVELOPMENT)
@@ -378,9 +372,6 @@ RANGE_ENDS = Limit(
     "stands at extremes in 128 sealed cases, most of them with effects: 20 at most; five logs of an arm and a CE150 that were cut off 40 "
     "and more",
 )
-RANGE_BEFORE_ROWS = Count(
-    400, "rows", "before a stand, by which the plant's state and numbers are known: time", "the same logs"
-)
 RANGE_BEHIND_ROWS = Count(30, "rows", "behind a stand, in which what an axis did unseen still shows", "the same logs")
 RANGE_STAND_ROWS = Count(16, "rows", "of a stand at least: in fewer no axis goes far unseen", "the same logs")
 CLOCK_SD = Limit(
@@ -416,7 +407,6 @@ ASTRAY_S = Limit(1.0, "s", "so long in all a flight may be further from the log 
 
 # What to record next (experiment)
 LEAST_AT_STAKE = Limit(0.02, "probability", "that a hypothesis must have, and that must be at stake")
-LEADING = Count(3, "hypotheses", "that a run is to tell apart: time")
 SURELY_APART = Limit(5.0, "standard deviations", "more of them tell hardly more")
 EFFORT = Limit(0.2, "share of a sure separation", "that an experiment of effort 1 costs")
 BEYOND_SURE = Limit(
@@ -431,7 +421,7 @@ OUTPUT_FLOOR = Limit(3.0, "encoder steps", "less is no outcome to look for")
 
 # What is told beside it (explain)
 IMITATED = Limit(0.995, "share of a signature", "that the plant's own parameters imitate, for a sentence")
-BELIEVED = Limit(0.6, "coherence", "below which a frequency response is not read", "Tischler and Remple (2012)")
+BELIEVED = thresholds.GOOD_COHERENCE
 LEAST_POWER_SHARE = Limit(
     1e-3, "share of the power of an output's modelled answers", "an input below is not there to move it"
 )

@@ -9,6 +9,7 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
+import identification.thresholds
 import logcheck.thresholds
 import replay.thresholds
 from diagnosis import decisions
@@ -78,7 +79,7 @@ def rooms_page() -> str:
 
 
 def decisions_page() -> str:
-    """Every constant that decides something: of a log, of the firmware, of a gap."""
+    """Every constant that decides something: of a log, of the firmware, of an estimate, of a gap."""
     parts = [
         "# The constants that decide\n",
         "Value, unit, reason, and the data that set each, in the order of the path of a diagnosis.\n",
@@ -86,6 +87,7 @@ def decisions_page() -> str:
     for heading, module in (
         ("Log check", logcheck.thresholds),
         ("Firmware replay", replay.thresholds),
+        ("Identification", identification.thresholds),
         ("Diagnosis", decisions),
     ):
         parts += [f"## {heading}\n", "| constant | value | unit | reason | data that set it |", "|---|---|---|---|---|"]

@@ -3,17 +3,16 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from logcheck import thresholds
 from logcheck.finding import Array
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.simulate import simulate
 
-SETTLE_S = 2.0  # with the first inputs before a log: rotors turn as these make them
-
 
 def states_along(log: RunLog, bound: BoundPlant) -> Array:
     """All states of a free run with the log's inputs, shape (rows, states): for those that no axis has, rotors and windings."""
-    before = max(1, round(SETTLE_S / log.sample_period_s))
+    before = max(1, round(thresholds.RUN_UP_S / log.sample_period_s))
     u = np.concatenate([np.repeat(log.u[:1], before, axis=0), log.u])
     with np.errstate(all="ignore"):
         runs = simulate(bound, np.arange(len(u)) * log.sample_period_s, np.zeros(len(bound.model.states)), u, keep="x")

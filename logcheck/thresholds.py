@@ -73,6 +73,9 @@ MOST_CLIPPED = Limit(
 )
 LINK_STOPS_S = Limit(0.5, "s", "within which all outputs stop where the link stops")
 
+# ahead, standing
+RUN_UP_S = Limit(4.0, "s", "with the first inputs before a log: rotors come to the speed that these ask for")
+
 # ends
 MOVED_FAR = Limit(0.5, "share of an input's range", "that moves any axis that is not stopped")
 ANSWER_TIMES = Limit(3.0, "times the most rows", "in which an output answers such a move elsewhere")

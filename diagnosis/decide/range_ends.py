@@ -29,6 +29,7 @@ from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
+RANGE_BEFORE_ROWS = 400  # before a stand, by which the plant's state and numbers are known: time
 Rows = NDArray[np.bool_]
 
 
@@ -126,7 +127,7 @@ def _misled(
     library: EffectLibrary, bound: BoundPlant, log: RunLog, used: Rows | None, place: int, stand: _Stand
 ) -> float:
     """By how many nats the rows behind a stand are less likely after all was read than after all but what is at its level."""
-    rows = np.arange(max(0, stand.first - decisions.RANGE_BEFORE_ROWS), stand.last + 1 + decisions.RANGE_BEHIND_ROWS)
+    rows = np.arange(max(0, stand.first - RANGE_BEFORE_ROWS), stand.last + 1 + decisions.RANGE_BEHIND_ROWS)
     near = part(log, slice(int(rows[0]), int(rows[-1]) + 1))
     before, at_end = rows <= stand.last, log.y[rows, place] == log.y[stand.first, place]
     kept = (np.ones(len(rows), bool) if used is None else used[rows]) & (before | ~at_end)

@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Filter, Pass, columns_of
 from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
@@ -16,6 +15,8 @@ from diagnosis.hypothesis.hypothesis import filter_input_under, passes
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
+EVENT_GRID_S = 0.3  # between the steps in time that are scored
+LEAST_EVENT_STEPS, MOST_EVENT_STEPS = 4, 200  # fewer tell no pulse from a step; more of a long log take time
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,8 +176,8 @@ class Linearisation:
         begin = min(filter_input.t_s[0] for filter_input in self.filter_inputs)
         end = max(filter_input.t_s[-1] for filter_input in self.filter_inputs)
         whole = end - begin
-        apart = min(decisions.EVENT_GRID_S, whole / decisions.LEAST_EVENT_STEPS)
-        return np.arange(begin, end, max(apart, whole / decisions.MOST_EVENT_STEPS))
+        apart = min(EVENT_GRID_S, whole / LEAST_EVENT_STEPS)
+        return np.arange(begin, end, max(apart, whole / MOST_EVENT_STEPS))
 
 
 def _weighed(values: Disturbances, weights: Sequence[float]) -> Disturbances:

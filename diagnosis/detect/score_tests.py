@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 # moment, and beyond its peak by these factors, where only a rounded corner is reached.
 LEVEL_SHARES, PEAK_SHARES = (0.5, 0.75, 0.9, 0.97, 0.995), (1.05, 1.2)
 SMALL_SIZE = 0.05
+MOST_STARTS = 8  # of an effect's shapes that are scored: time
+FARTHEST_SIZE = 30.0  # references: no larger size is proposed
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +75,7 @@ def shape_starts(effect: Effect) -> list[dict[str, float]]:
     """Values of an effect's shapes to start from, its sizes left out."""
     shapes = [parameter for parameter in effect.parameters if not parameter.is_size]
     choices = [p.starts or (p.reference,) for p in shapes]
-    return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][
-        : decisions.MOST_STARTS
-    ]
+    return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][:MOST_STARTS]
 
 
 def _starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
@@ -141,7 +141,7 @@ def _score_tests(case: Case, values: Mapping[str, Values], scores: Scores, units
             continue
         parameter, unit = case.library.effects[name].size, units[index]
         score = float(scores.score[index] / norm[index])
-        size = float(np.clip(score / norm[index], -decisions.FARTHEST_SIZE, decisions.FARTHEST_SIZE))
+        size = float(np.clip(score / norm[index], -FARTHEST_SIZE, FARTHEST_SIZE))
         value = float(np.clip((parameter.zero or 0.0) + size * unit, parameter.lower, parameter.upper))
         size = (value - (parameter.zero or 0.0)) / unit
         gain = float(size * norm[index] * (score - 0.5 * size * norm[index]))

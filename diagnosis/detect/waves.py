@@ -17,6 +17,7 @@ from sim.effect import Effect, EffectParameter, Role
 Array = NDArray[np.float64]
 RATES_RAD_S = np.arange(0.3, 14.0, 0.05)
 APART_RAD_S = 0.3
+MOST_WAVES = 48  # a turn, that are tried: nearer ones are not told apart (WAVES_APART)
 
 
 def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
@@ -69,9 +70,9 @@ def _likely_counts(linearisation: Linearisation, target: int, waves: EffectParam
     way = _way(linearisation, target)
     if way is None:
         return ()
-    fitted = np.geomspace(waves.lower, waves.upper, decisions.MOST_WAVES)
+    fitted = np.geomspace(waves.lower, waves.upper, MOST_WAVES)
     scores = linearisation.scores_by(_sines(linearisation, target, way, fitted), target)
-    pairs = np.arange(2 * decisions.MOST_WAVES).reshape(2, decisions.MOST_WAVES).T
+    pairs = np.arange(2 * MOST_WAVES).reshape(2, MOST_WAVES).T
     own, along = scores.gram[pairs[:, :, None], pairs[:, None, :]], scores.score[pairs]
     return tuple(
         float(np.exp(value)) for value in _best(np.log(fitted), _pair_gains(own, along), decisions.WAVES_APART)

@@ -25,6 +25,7 @@ from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
 LONGEST_PERIOD_S = 0.02  # between rows of a simulated experiment: no verdict hangs on it
+LEADING = 3  # hypotheses that a run is to tell apart: time
 NO_EXPERIMENT = "none of the menu"
 
 
@@ -46,7 +47,7 @@ def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     """The run that separates most of what is undecided, with the outcome to expect; None where nothing is, or nothing can be flown."""
     ranked = zip(weighed.fitted, weighed.probabilities, strict=True)
     likely = [(fitted, probability) for fitted, probability in ranked if probability > decisions.LEAST_AT_STAKE]
-    leading = likely[: decisions.LEADING]
+    leading = likely[:LEADING]
     pairs = {
         (a, b): leading[a][1] * leading[b][1]
         for a, b in combinations(range(len(leading)), 2)

@@ -16,6 +16,9 @@ from sim.effect import EffectParameter, Role, Values
 
 Array = NDArray[np.float64]
 LEAST_STEP_GAIN = 0.1  # gain of the log posterior below which a fit has ended
+LITTLE_NATS = (
+    1.0  # gained by a round of several fits, or promised by a step, below which it is the last: a tenth of TAKEN_IN
+)
 DAMPINGS = 4
 DIFFERENCE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, LAG_JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there

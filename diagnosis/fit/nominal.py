@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.fit.coloured_noise import coloured_noise_of, colours, with_colours
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, has_memory, nominal_hypothesis
@@ -15,7 +15,7 @@ from records.errors import BadInput
 
 NOMINAL_ROUNDS = 4
 NOISE_STARTS = tuple(float(decisions.FIRST_PROCESS_NOISE) + by for by in (-1.0, 0.0, 1.0))  # log10 rad/s per sqrt(s)
-SETTLING_ROUNDS, SETTLED_GAIN = 8, 1.0  # nats: parameters and noises give way to each other by little a round
+SETTLING_ROUNDS = 8  # parameters and noises give way to each other by little a round
 
 
 def best_plain_fit(case: Case) -> Fit:
@@ -50,7 +50,7 @@ def settled(case: Case, start: Hypothesis) -> Fit:
                 "measures a slope at 0: h / (h^2 + 1e-6)^(1/4)",
             )
         again = fit(case, with_process_noise(case, found.hypothesis), rounds=NOMINAL_ROUNDS)
-        if again is not None and again.log_posterior < found.log_posterior + SETTLED_GAIN:
+        if again is not None and again.log_posterior < found.log_posterior + LITTLE_NATS:
             break
         found = again
     assert found is not None
@@ -101,7 +101,7 @@ def _under(case: Case, found: Fit, coloured: Hypothesis) -> Fit:
         if again is None:
             break
         gained, found, coloured = again.log_posterior - found.log_posterior, again, again.hypothesis
-        if gained < SETTLED_GAIN:
+        if gained < LITTLE_NATS:
             break
     return found
 

@@ -14,15 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import likelihood
+from diagnosis.fit.gauss_newton import LITTLE_NATS, likelihood
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 
 Array = NDArray[np.float64]
 NUDGE = 1e-4  # decades, over which slopes of the noise itself are taken
 MOST_SCORING_STEPS = 10
-LITTLE_PROMISED = 1.0  # nats: a tenth of what tells two names apart (TAKEN_IN)
-NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
+NEARLY_THERE = 3.0 * LITTLE_NATS  # promised, and half of them found: of so near a top one step leaves less than little
 UNKNOWN_SD = 1e3  # decades: next to nothing is known beforehand
 STEP_SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
@@ -53,11 +52,11 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
         step, single = _step(at, numbers, g, information), _single(at, numbers, g, information)
         promises = [_promised(g, information, one) for one in single]
         promised = max(_promised(g, information, step), *promises)
-        if promised < LITTLE_PROMISED:
+        if promised < LITTLE_NATS:
             break
         alone = [single[place] for place in np.argsort(promises)[::-1] if promises[place] > NEARLY_THERE]
         tries = _tries(at, numbers, step, alone)
-        better = _better(case, tries, numbers, _worth(at, runs, numbers) + LITTLE_PROMISED)
+        better = _better(case, tries, numbers, _worth(at, runs, numbers) + LITTLE_NATS)
         if better is None:
             break
         gained = _worth(*better, numbers) - _worth(at, runs, numbers)

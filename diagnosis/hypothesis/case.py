@@ -18,6 +18,7 @@ from sim.bind import BoundPlant
 from sim.effect import Values
 
 Array = NDArray[np.float64]
+BEGINNING_ROWS = 2500  # time: the few numbers of noise are known to some per cent from those
 LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of their stated deviations
 
 
@@ -144,7 +145,7 @@ def make_case(
 
 def beginning_of(case: Case) -> Case:
     """The first BEGINNING_ROWS rows of each log: some numbers of noise are known well enough from those."""
-    return first_rows(case, int(decisions.BEGINNING_ROWS))
+    return first_rows(case, BEGINNING_ROWS)
 
 
 def first_rows(case: Case, count: int) -> Case:

@@ -9,7 +9,7 @@ from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, beginning
 from diagnosis.filter.kalman import Noise
 from diagnosis.library.effect_library import EffectLibrary
-from logcheck.stands.standing import RUN_UP_S
+from logcheck import thresholds
 
 Array = NDArray[np.float64]
 START_S = 0.1
@@ -94,7 +94,7 @@ def _likelihood(
 def _rest(library: EffectLibrary, filter_input: FilterInput, x0: Array) -> Array:
     """States after a while under the first inputs with every axis held; as they are where the plant leaves all bounds."""
     step_s = min(LONGEST_STEP_S, float(np.median(np.diff(filter_input.t_s))))
-    t_s = np.arange(0.0, RUN_UP_S + step_s, step_s)
+    t_s = np.arange(0.0, thresholds.RUN_UP_S + step_s, step_s)
     read = np.full((len(t_s), filter_input.y.shape[1]), np.nan)
     blind = replace(
         filter_input,

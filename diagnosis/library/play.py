@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.library.reading_spans import charge, less_sure
 from sim.paths.path import played
@@ -12,7 +13,6 @@ from sim.paths.path import played
 Array = NDArray[np.float64]
 # A reading behind play says that the axis lies within it, no more: as a bell of the same variance an interval costs ln sqrt(12 / 2 pi).
 BELL = 0.32
-LEAST_CHANGES = 3  # of a reading: fewer say nothing of how long it usually takes
 
 
 def behind_play(filter_input: FilterInput, output: int, width: float, step: float) -> FilterInput:
@@ -63,7 +63,7 @@ def pushing(read: Array, noise: float) -> Array:
     rows = np.arange(len(read))
     moved, coming = _moves(read, noise), _moves(read[::-1], noise)[::-1]
     changes = np.flatnonzero(moved)
-    if len(changes) < LEAST_CHANGES:
+    if len(changes) < decisions.PLAY_CHANGES:
         return np.zeros(len(read))
     before = np.searchsorted(changes, rows, side="right") - 1
     standing = rows - changes[np.maximum(before, 0)]

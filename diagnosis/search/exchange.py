@@ -9,10 +9,9 @@ from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects, shape_starts
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
-from diagnosis.fit.scoring import LITTLE_PROMISED
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
@@ -137,7 +136,7 @@ def _exchanged(
     ends = [entry for entry in thread_map(lambda entry: refined(case, entry), near) if entry]
     keep_better(found, ends)
     end = max(ends, key=lambda entry: entry.evidence, default=best)
-    return end if end.evidence > best.evidence + LITTLE_PROMISED else None
+    return end if end.evidence > best.evidence + LITTLE_NATS else None
 
 
 def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Job]:

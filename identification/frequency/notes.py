@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.frequency.match.cost import GOOD_COHERENCE
+from identification import thresholds
 from identification.frequency.match.fit import FrequencyFit
 from identification.frequency.match.intervals import BLIND, slopes
 from identification.frequency.models.linear_model import held_response
@@ -38,8 +38,8 @@ def notes_on(estimates: Sequence[Estimated], fit: FrequencyFit, pairs: Sequence[
         f"{', '.join(names)}: not told; {reason}; the plant file's value is kept" for reason, names in reasons.items()
     ]
     silent = [
-        f"{pair.input} to {pair.output}: not matched, as its coherence is nowhere {GOOD_COHERENCE:g} over four frequencies (at most "
-        f"{pair.coherence:.2f})"
+        f"{pair.input} to {pair.output}: not matched, as its coherence is nowhere {thresholds.GOOD_COHERENCE:g} over four frequencies "
+        f"(at most {pair.coherence:.2f})"
         for pair in pairs
         if not pair.points
     ]
@@ -81,9 +81,9 @@ def _reason(fit: FrequencyFit, name: str) -> str:
         return f"{where}, whose coherence is good: sweep longer or with more amplitude, or hold a parameter that does the same"
     bands = " and ".join(f"from {low:.3g} to {high:.3g} rad/s" for low, high in weak)
     if len(weak) > MOST_BANDS:
-        share = float(np.mean(fit.responses.coherence[:, o, i] < GOOD_COHERENCE))
+        share = float(np.mean(fit.responses.coherence[:, o, i] < thresholds.GOOD_COHERENCE))
         bands = f"over {100.0 * share:.0f} % of the band"
-    return f"{where}, whose coherence is below {GOOD_COHERENCE:g} {bands}"
+    return f"{where}, whose coherence is below {thresholds.GOOD_COHERENCE:g} {bands}"
 
 
 def together(fit: FrequencyFit) -> list[list[str]]:
@@ -107,7 +107,7 @@ def _shows(fit: FrequencyFit, place: int) -> Array:
 
 
 def _weak_bands(of: Responses, o: int, i: int) -> list[tuple[float, float]]:
-    weak = np.concatenate([[False], of.coherence[:, o, i] < GOOD_COHERENCE, [False]])
+    weak = np.concatenate([[False], of.coherence[:, o, i] < thresholds.GOOD_COHERENCE, [False]])
     edges = np.flatnonzero(np.diff(weak.astype(int)))
     return [
         (float(of.omega_rad_s[a]), float(of.omega_rad_s[b - 1])) for a, b in zip(edges[::2], edges[1::2], strict=True)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from identification import thresholds
 from identification.experiments.table import aid_unit
 from identification.fit.belief import Belief
 from identification.results.notes import bound_warning, relative, stage_notes
@@ -16,7 +17,6 @@ from sim.model import Model
 INTERRUPTED = "the best so far of a fit that was interrupted"
 NORMAL = 1.96  # half the width of a 95 % interval of a normal distribution, in standard deviations
 MOST_POWERS = 50.0  # of e: an interval that reaches over more factors says nothing more
-FARTHEST = 0.6  # of a size: a parameter whose interval reaches farther is held by having been given one, not by data
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ def _estimated(
     """
     before, before_sd, unit = stated
     value, sd = _told(name, belief)
-    told = factor * max(sd, loose_sd) < FARTHEST * max(abs(before), abs(value), before_sd) or before == 0.0
+    told = factor * max(sd, loose_sd) < thresholds.FARTHEST * max(abs(before), abs(value), before_sd) or before == 0.0
     kept, kept_sd, reach = (value, sd, factor) if told else (before, before_sd, NORMAL)
     lower, upper = interval(kept, reach * kept_sd, sign)
     return Estimated(name, unit, start, kept, kept_sd, lower, upper, told, value, sd if told else max(sd, loose_sd))

@@ -5,21 +5,18 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from identification import thresholds
 from identification.fit.belief import Belief
 from identification.fit.normal_equations import ROUNDING, Point
 from identification.fit.problem import Prior, Problem
 from identification.fit.solve import solve
 from identification.runs.run import Run
 from identification.stages.estimate import Estimate
-from identification.uncertainty.contradiction import CONTRADICTION_SD
 from identification.uncertainty.residuals import ResidualTest, tests_at
 
 Array = NDArray[np.float64]
-WORSE, MOST_LEFT = 1.5, 0.3
-SENSORS = 1.1  # times what a sensor alone leaves: as good as that
 ROUNDED_OFF = 1e-12  # of an estimate, below which runs in double precision, in steps, tell nothing
 MOST_GROWTH = ROUNDING**-0.5  # of a window's slopes: beyond it the rounding of their squares outweighs a first reading
-NEARLY = 2.0  # times that from a fit that has not settled
 
 
 def best_fit(found: Sequence[Estimate]) -> Estimate:
@@ -36,17 +33,17 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
     sound = [
         entry
         for entry, cost in zip(found, costs, strict=True)
-        if cost <= WORSE**2 * min(costs)
+        if cost <= thresholds.WORSE**2 * min(costs)
         and entry.growth <= MOST_GROWTH
-        and all(test.fit > 1.0 - MOST_LEFT or _of_the_sensor(test) for test in entry.residuals)
-        and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
+        and all(test.fit > 1.0 - thresholds.MOST_LEFT or _of_the_sensor(test) for test in entry.residuals)
+        and apart_sd(found[0].belief, entry.belief) <= thresholds.CONTRADICTS
     ]
     return min(sound or found[:1], key=_volume)
 
 
 def may_explain(first: Point) -> bool:
     """The model explains short windows, if not to the last bit yet; where it does not, a whole log is not worth a fit."""
-    return all(test.rms <= NEARLY * test.floor for test in tests_at(first))
+    return all(test.rms <= thresholds.NEARLY * test.floor for test in tests_at(first))
 
 
 def nothing_left(whole: Estimate) -> bool:
@@ -61,7 +58,7 @@ def nothing_left(whole: Estimate) -> bool:
 
 def _of_the_sensor(test: ResidualTest) -> bool:
     """No more is left than the sensor's own errors: so it is of an axis at rest, too, none of whose readings are explained."""
-    return test.rms <= SENSORS * test.floor
+    return test.rms <= thresholds.SENSORS * test.floor
 
 
 def apart_sd(one: Belief, other: Belief) -> float:

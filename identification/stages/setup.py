@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+from identification import thresholds
 from identification.experiments.kind import Kind
 from identification.experiments.table import kind_of
 from identification.fit.belief import Belief
@@ -13,8 +14,6 @@ from identification.stages.estimate import Estimate, estimate
 from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant
-
-POOR = 5.0  # residuals so many times above what the sensor leaves call for a look at the mount
 
 
 def check_setup(experiment: Experiment, bound: BoundPlant) -> None:
@@ -36,13 +35,13 @@ def check_setup(experiment: Experiment, bound: BoundPlant) -> None:
 
 def check_mount(run: Run, kind: Kind, result: Estimate, ranges: Mapping[str, Range], before: Belief) -> None:
     """Raise BadInput where the motion is badly predicted on the stated mount and far better on the other."""
-    poor = any(test.floor > 0.0 and test.rms > POOR * test.floor for test in result.residuals)
+    poor = any(test.floor > 0.0 and test.rms > thresholds.POOR * test.floor for test in result.residuals)
     other = _on_other_mount(run)
     if not poor or other is None:
         return
     there = estimate([other], result.own, ranges, before)
     own_rms, other_rms = (max(test.rms for test in found.residuals) for found in (result, there))
-    if other_rms < own_rms / POOR:
+    if other_rms < own_rms / thresholds.POOR:
         moved = {"turned": "upright", "upright": "turned"}[kind.mount]
         raise BadInput(
             "mount", f"experiment {run.name}", f"a motion as on the mount {moved!r} (residuals {other_rms:.2g} there, {own_rms:.2g} here)",

@@ -4,12 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from identification import thresholds
 from identification.fit.belief import Belief
-
-CONTRADICTION_SD = 5.0  # sd of what the new data may move: once in a million by chance
-CONTRADICTION_MOVE = (
-    3.0  # and sd of what was known before: a move within that is no news, however sure the new data are
-)
 
 
 @dataclass(frozen=True)
@@ -29,6 +25,6 @@ def contradictions(before: Belief, after: Belief) -> tuple[Contradiction, ...]:
         spread = before.covariance[place, place] - after.covariance[place, place]
         moved = float(after.mean[place] - before.mean[place])
         sds = abs(moved) / float(np.sqrt(max(spread, 1e-4 * before.covariance[place, place])))
-        if sds > CONTRADICTION_SD and abs(moved) > CONTRADICTION_MOVE * before.sd[place]:
+        if sds > thresholds.CONTRADICTS and abs(moved) > thresholds.NO_NEWS * before.sd[place]:
             found.append(Contradiction(name, sds, float(before.mean[place]), float(after.mean[place])))
     return tuple(found)

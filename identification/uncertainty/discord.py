@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from identification import thresholds
 from identification.fit.information import inverse
 from identification.fit.normal_equations import Point, alone
 from identification.fit.problem import Problem
 
 Array = NDArray[np.float64]
-DISCORD_SD = 5.0
 LEAST_SHARE = 0.01  # of a cost: first order does not bear more
 
 
@@ -30,7 +30,7 @@ class Discord:
 
 
 def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
-    """The parameters in which a run is more than `DISCORD_SD` away from the others, the farthest first.
+    """The parameters in which a run is more than `CONTRADICTS` standard deviations away from the others, the farthest first.
 
     To first order about the common optimum theta: run i by itself would end at theta + A_i^-1 g_i, with its information A_i and its
     gradient g_i, window starts eliminated; the others likewise with the sums of theirs and what was known before. The weights are those
@@ -56,7 +56,7 @@ def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
         found += [
             Discord(run.name, against, name, float(sds[place]), float(own[place]), float(others[place]))
             for place, name in enumerate(problem.names)
-            if sds[place] > DISCORD_SD
+            if sds[place] > thresholds.CONTRADICTS
         ]
     return tuple(sorted(found, key=lambda entry: -entry.sds))
 

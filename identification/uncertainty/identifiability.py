@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from identification import thresholds
+
 Array = NDArray[np.float64]
-BLIND = 0.5  # a direction whose sd is above half of the parameters' size is not identified
 
 
 @dataclass(frozen=True)
@@ -19,12 +20,12 @@ class Direction:
 
 
 def unseen(names: Sequence[str], H: Array, scale: Array) -> tuple[Direction, ...]:
-    """Directions of the scaled information S H S whose relative sd is above `BLIND`, worst first; by its eigenvectors (its SVD)."""
+    """Directions of the scaled information S H S whose relative sd is above `NOT_IDENTIFIED`, worst first; by its eigenvectors."""
     values, vectors = np.linalg.eigh(H * np.outer(scale, scale))
     found = []
     for value, vector in zip(values, vectors.T, strict=True):
         sd = float(1.0 / np.sqrt(max(value, 1e-24)))
-        if sd > BLIND:
+        if sd > thresholds.NOT_IDENTIFIED:
             found.append(Direction(_weights(names, vector), sd))
     return tuple(found)
 

@@ -15,7 +15,7 @@ from logcheck.ahead import read_ahead, states_along, with_axes_as_read
 from logcheck.facts import PlantFacts
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows, without
 from logcheck.stands.column import runs
-from logcheck.stands.standing import RUN_UP_S, dead_end, last_stand
+from logcheck.stands.standing import dead_end, last_stand
 from records.log import RunLog
 from records.text.units import unit_of
 from sim.bind import BoundPlant
@@ -106,7 +106,7 @@ def _off(log: RunLog, bound: BoundPlant, column: str, stands: Rows, first: int, 
     rests = np.abs(values[rows] - values[rows - back]) <= least
     known = np.isfinite(log.y[rows] + log.y[rows - back]).all(axis=1) & np.isfinite(values[rows + ahead])
     # Until then the states that no sensor reads are not known.
-    rows = rows[rests & known & (log.t_s[rows] > log.t_s[first] + RUN_UP_S)]
+    rows = rows[rests & known & (log.t_s[rows] > log.t_s[first] + thresholds.RUN_UP_S)]
     here = _some(rows[stands[rows - back] & stands[rows] & stands[rows + ahead]])
     elsewhere = _some(rows[~stands[rows] & ~stands[rows + ahead]])
     if not len(here) or len(elsewhere) < thresholds.LEAST_ANSWERS:

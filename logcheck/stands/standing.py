@@ -19,8 +19,6 @@ from sim.bind import BoundPlant
 from sim.model import Axis
 from sim.simulate import simulate
 
-RUN_UP_S = 4.0  # for rotors to come to their speed
-
 
 def locked_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
     """Axes whose reading is one number throughout, that are not declared locked, and that the log's inputs would move."""
@@ -48,7 +46,7 @@ def _would_move(log: RunLog, bound: BoundPlant, axis: Axis, angle: float) -> flo
     place, others = states.index(str(axis.position)), [other.name for other in bound.model.axes if other is not axis]
     x0 = np.zeros(len(states))
     x0[place] = angle
-    run_up = np.arange(0.0, RUN_UP_S, 0.01)
+    run_up = np.arange(0.0, thresholds.RUN_UP_S, 0.01)
     x = _states(bound, run_up, x0, np.tile(log.u[:1], (len(run_up), 1)), [axis.name, *others])
     rows = log.t_s - log.t_s[0] <= thresholds.LOCKED_S
     way = _states(bound, log.t_s[rows] - log.t_s[0], x[-1], log.u[rows], others)[:, place]

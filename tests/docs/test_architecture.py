@@ -58,6 +58,7 @@ EXAMPLES = {
     "probability of a first name": Example(""),
     "threshold of the log check": Example("MOST_READINGS = ", searched=("logcheck",)),
     "threshold of the replay": Example("OLDEST_ANGLES = ", searched=("replay",)),
+    "threshold of an identification": Example("NO_NEWS = ", searched=("identification",)),
     "importer of a data set": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, ("recordings",)),
     "file format that `import` reads": Example("ulog", {"NAME": "ulog"}, ("recordings",)),
     "kind of library of the law's C": Example("", {"NAME": "stm32cube"}),

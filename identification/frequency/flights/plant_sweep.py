@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.law import FloatLaw
+from identification import thresholds
 from identification.frequency.flights.sweep import Sweep, sweep_input
-from records.deciding import Limit
 from records.errors import BadInput
 from records.log import DOUBLE, RunLog
 from records.table import ControllerTable
@@ -21,19 +21,11 @@ from sim.wiring import wiring
 Array = NDArray[np.float64]
 
 BAND_RAD_S = (0.3, 10.0)  # of a loop as fast as the CE150's, see docs/seeds.md
-FAST_RAD_S = Limit(
-    2.7,
-    "rad/s",
-    "slowest designed pole of the CE150's loops: a slower loop passes nothing of so fast a reference, and the feedback of the sensor's "
-    "steps is all that is left; a faster one is swept as it is, since a shorter record tells less",
-    "tank of new-plant, poles from 0.3 rad/s: misfit 3.9 by the band as it is, 0.42 by a ninth of it; heater, from 0.5: sd of the capacity "
-    "0.56 and 0.053 %; motor, from 15: sd of K 2 and, five times faster, 10 %",
-)
 
 
 def band_of(slowest_rad_s: float) -> tuple[float, float]:
     """The band [rad/s] for loops whose slowest pole is at -`slowest_rad_s`: as much slower as the loop is."""
-    share = min(1.0, slowest_rad_s / FAST_RAD_S)
+    share = min(1.0, slowest_rad_s / thresholds.FAST_RAD_S)
     return share * BAND_RAD_S[0], share * BAND_RAD_S[1]
 
 

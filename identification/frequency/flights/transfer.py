@@ -21,15 +21,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import butter, filtfilt, savgol_filter
 
-from records.deciding import Limit
+from identification import thresholds
 
 Array = NDArray[np.float64]
-BANDWIDTH_rad_s = Limit(
-    25.0,
-    "rad/s",
-    "twice the highest frequency of the sweeps: what the lever adds is right within 5 % there, and its noise is a quarter of it",
-    "sweeps of raptor50: the lever adds 0.014 m/s^2 rms, its noise is 0.0037 by 25 rad/s, 0.0013 by 12, 0.014 by 60",
-)
 MOST_BAND = 0.8  # of half the sampling rate: a slower log is not smoothed below that
 RINGING = 20.0  # time constants of the filter after which its memory is none
 
@@ -61,7 +55,7 @@ def lever_terms(omega_rad_s: Array, omega_dot_rad_s2: Array, r_s_m: Array) -> tu
 
 def smoothed(signal: Array, sample_period_s: float) -> Array:
     """Readings (n, channels) without what is faster than BANDWIDTH_rad_s."""
-    share = min(BANDWIDTH_rad_s * sample_period_s / math.pi, MOST_BAND)
+    share = min(thresholds.BANDWIDTH_rad_s * sample_period_s / math.pi, MOST_BAND)
     memory = math.ceil(RINGING / (share * math.pi))
     ends = min(max(math.ceil(4.0 / share), 3), signal.shape[0])
     before = _continued(signal[:ends][::-1], memory)[::-1]
@@ -84,7 +78,7 @@ def slopes_of(signal: Array, sample_period_s: float) -> Array:
 
 def lever_noise_m_s2(omega_sd_rad_s: ArrayLike, r_s_m: ArrayLike, sample_period_s: float) -> Array:
     """(1) carried to the centre of gravity: the standard deviation (3,) that noise of the rates (3,) leaves in each acceleration."""
-    gain = math.sqrt(math.sqrt(2.0) / 16.0 * BANDWIDTH_rad_s**3 * sample_period_s)
+    gain = math.sqrt(math.sqrt(2.0) / 16.0 * thresholds.BANDWIDTH_rad_s**3 * sample_period_s)
     sd, r = (np.asarray(value, dtype=float) for value in (omega_sd_rad_s, r_s_m))
     by_axis = np.cross(np.diag(gain * sd), r)
     return np.asarray(np.linalg.norm(by_axis, axis=0))

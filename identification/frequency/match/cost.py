@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from identification import thresholds
 from identification.frequency.responses.conditioned import Responses
 
 Array = NDArray[np.float64]
@@ -19,7 +20,6 @@ Complex = NDArray[np.complex128]
 Index = NDArray[np.int64]
 N_OMEGA = 20
 W_G, W_P = 1.0, 0.01745
-GOOD_COHERENCE = 0.6
 LEAST_POINTS = 4
 
 
@@ -35,8 +35,8 @@ class Target:
 
 
 def good_range(coherence: Array) -> Index:
-    """Places of the longest run of frequencies whose coherence (f,) is at least 0.6; none where it is shorter than four."""
-    good = np.concatenate([[False], coherence >= GOOD_COHERENCE, [False]])
+    """Places of the longest run of frequencies whose coherence (f,) is good; none where it is shorter than four."""
+    good = np.concatenate([[False], coherence >= thresholds.GOOD_COHERENCE, [False]])
     edges = np.flatnonzero(np.diff(good.astype(int)))
     begins, ends = edges[::2], edges[1::2]
     if not begins.size or np.max(ends - begins) < LEAST_POINTS:

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import SETTLED_GAIN, best_plain_fit, plain_beside, plain_from, with_memory_from
+from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
+from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory_from
 from diagnosis.hypothesis.case import Case
 from diagnosis.seeing import detected
 from tests.diagnosis.arm import arm_case, arm_log
@@ -32,7 +32,7 @@ def test_beside_a_name_that_is_none_the_plant_is_what_it_is_alone(case: Case) ->
     again = plain_beside(case, named(case, plain), plain)
     assert again is not None
     assert not again.hypothesis.effects
-    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
+    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * LITTLE_NATS)
     assert plain_beside(case, plain, plain) is None
 
 
@@ -46,7 +46,7 @@ def test_from_another_hill_the_plant_comes_back(case: Case) -> None:
     assert lost.log_posterior < plain.log_posterior - 1000.0
     again = plain_beside(case, replace(named(case, plain), hypothesis=far.with_effects(RUB)), plain)
     assert again is not None
-    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
+    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * LITTLE_NATS)
     assert np.all(np.abs(again.hypothesis.theta) < 3.0)
 
 
@@ -58,10 +58,10 @@ def test_another_reading_of_the_same_logs_ends_no_worse_than_the_first() -> None
     assert noisy.log_posterior > plain.log_posterior + 10.0
     again = plain_from(gusty, noisy.hypothesis)
     assert not again.hypothesis.effects
-    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * SETTLED_GAIN)
+    assert again.log_posterior == pytest.approx(plain.log_posterior, abs=2.0 * LITTLE_NATS)
     found = with_memory_from(gusty, again, noisy.hypothesis)
     assert found.hypothesis.effects.keys() == noisy.hypothesis.effects.keys()
-    assert found.log_posterior > noisy.log_posterior - 2.0 * SETTLED_GAIN
+    assert found.log_posterior > noisy.log_posterior - 2.0 * LITTLE_NATS
 
 
 def test_no_gap_asks_for_no_second_fit(case: Case) -> None:

@@ -8,9 +8,9 @@ import pytest
 from diagnosis.fit.coloured_noise import _size as size
 from diagnosis.fit.coloured_noise import _time as time
 from diagnosis.fit.coloured_noise import colours as colours
-from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.gauss_newton import LITTLE_NATS, likelihood_of
 from diagnosis.fit.process_noise import LEAST_NOISE, axis_noise, white_noise
-from diagnosis.fit.scoring import LITTLE_PROMISED, Number, likeliest_numbers
+from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.fit.scoring import _passes as passes_by
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on, nominal_hypothesis, passes
@@ -50,7 +50,7 @@ def test_noise_that_is_next_to_none_is_found_again() -> None:
     best, value = likeliest_numbers(case, fitted, axis_noise(case, fitted))
     begun = replace(best, process_noise=np.full_like(best.process_noise, LEAST_NOISE))
     found, there = likeliest_numbers(case, begun, axis_noise(case, begun))
-    assert there > value - LITTLE_PROMISED
+    assert there > value - LITTLE_NATS
     assert found.process_noise == pytest.approx(best.process_noise, abs=0.1)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from identification.frequency.flights.transfer import BANDWIDTH_rad_s
+from identification import thresholds
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.models.lateral_record import LateralFlight
 from identification.frequency.quality import frequency_quality
@@ -90,7 +90,8 @@ def _flown(flown: LateralFlight, plots: Mapping[str, str]) -> Section:
     sentences = (
         f"The record {flown.name}: what the pilot swept and how the helicopter rolls.",
         f"Then the lateral acceleration, carried from the accelerometer to the centre of gravity: {removed:.2g} m/s^2 rms is taken off. "
-        f"The rates are smoothed at {BANDWIDTH_rad_s:g} rad/s for it; by their stated noise that adds {flown.noise_m_s2:.2g} m/s^2 rms.",
+        f"The rates are smoothed at {thresholds.BANDWIDTH_rad_s:g} rad/s for it; by their stated noise that adds "
+        f"{flown.noise_m_s2:.2g} m/s^2 rms.",
     )
     return Section("A sweep as it was flown (Figs. 2 and 3)", sentences, (), (plots[SWEEP], plots[TRANSFER]))
 

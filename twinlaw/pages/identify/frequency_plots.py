@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.frequency.match.cost import GOOD_COHERENCE
+from identification import thresholds
 from identification.frequency.models.lateral_record import LateralFlight
 from identification.frequency.result import FrequencyIdentification, TimeCheck
 from identification.frequency.truth import Truth
@@ -104,7 +104,7 @@ def _curves(
 def _coherence(found: FrequencyIdentification, truth: Truth | None, o: int, i: int) -> Panel:
     responses = found.fit.responses
     curve = Curve(responses.omega_rad_s, responses.coherence[:, o, i], "", GREY)
-    return Panel("coherence [-]", (curve,), ((GOOD_COHERENCE, ""),), within=(0.0, 1.02))
+    return Panel("coherence [-]", (curve,), ((thresholds.GOOD_COHERENCE, ""),), within=(0.0, 1.02))
 
 
 def _history(found: FrequencyIdentification, check: TimeCheck) -> str:
