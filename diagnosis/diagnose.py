@@ -58,7 +58,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if not alarmed(seen.detection.p):
         return _nothing(seen, noisy, material, Exit.UNEXPLAINED)
     curve = free_curve(seen.case, seen.retuned, seen.linearisation, found.fitted[0])
-    seen, judged = _judged(seen, material, found, beyond, curve)
+    seen, judged = _judged(seen, material, _Found(found, beyond, curve))
     seen, left_by = of_consequence(seen, judged)
     if left_by is not None:
         perhaps = may_be_missing(judged) if left_by is Exit.TOO_UNSURE else ()
@@ -116,7 +116,7 @@ def _gust(seen: Seen, material: Material, found: Draught) -> Result:
     p = min(1.0, float(np.exp(-gained)))
     seen = replace(seen, retuned=found.quiet, detection=replace(seen.detection, p=p))
     search = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.score_tests)
-    seen, judged = _judged(seen, material, search)
+    seen, judged = _judged(seen, material, _Found(search))
     return _gap(seen, material, judged)
 
 
@@ -182,29 +182,37 @@ def _searched(seen: Seen) -> Search | None:
     return search(seen.case, seen.case.library.candidates, alone_of(seen))
 
 
-def _judged(
-    seen: Seen, material: Material, found: Search, beyond: Retune | None = None, curve: FittedCurve | None = None
-) -> tuple[Seen, Judged]:
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What may explain a gap: names, the plant's parameters beyond their spread, a free curve."""
+
+    search: Search
+    beyond: Retune | None = None
+    curve: FittedCurve | None = None
+
+
+def _judged(seen: Seen, material: Material, found: _Found) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
     logs = FittedLogs(seen.case)
-    curve = curve_that_predicts(logs, curve, seen.retuned.fit.hypothesis)
-    ranked = _ranked(seen, material, found, beyond, curve, logs)
-    wider = found if not ranked.weighed.fitted else with_twins(seen.case, found, ranked.weighed.fitted[0])
-    if wider is not found:
-        found = wider
-        ranked = _ranked(seen, material, found, beyond, curve, logs, ranked.holdout)
+    found = replace(found, curve=curve_that_predicts(logs, found.curve, seen.retuned.fit.hypothesis))
+    ranked = _ranked(seen, material, found, logs)
+    first = ranked.weighed.fitted[0] if ranked.weighed.fitted else None
+    wider = found.search if first is None else with_twins(seen.case, found.search, first)
+    if wider is not found.search:
+        found = replace(found, search=wider)
+        ranked = _ranked(seen, material, found, logs, ranked.holdout)
     seen, weighed, holdout, retuned = ranked.seen, ranked.weighed, ranked.holdout, seen.retuned
-    doubts = doubt(seen.case, found, weighed, material.names)
+    doubts = doubt(seen.case, found.search, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *ranked.notes)
     share = first_share(seen.case, weighed)
-    chosen, named_rules = chosen_of(weighed, retuned, None if beyond is None else beyond.fitted, share)
+    chosen, named_rules = chosen_of(weighed, retuned, None if found.beyond is None else found.beyond.fitted, share)
     seen = seen.because(*doubts.decisions, *named_rules)
     if holdout is not None and chosen is retuned:
         chosen = holdout.base
     elif holdout is not None:
         chosen, told, rules = added(holdout, chosen, share if chosen.effects else 1.0)
         seen, notes = seen.because(*rules), (*notes, *told)
-    return seen, Judged(found, beyond, curve, weighed, chosen, holdout, notes)
+    return seen, Judged(found.search, found.beyond, found.curve, weighed, chosen, holdout, notes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,30 +225,24 @@ class _Ranked:
     notes: tuple[Note, ...] = ()
 
 
-def _ranked(
-    seen: Seen,
-    material: Material,
-    found: Search,
-    beyond: Retune | None,
-    curve: FittedCurve | None,
-    logs: FittedLogs,
-    known: Holdout | None = None,
-) -> _Ranked:
+def _ranked(seen: Seen, material: Material, found: _Found, logs: FittedLogs, known: Holdout | None = None) -> _Ranked:
     """What was found, ranked; `known` is a hold-out that was made before.
 
     What predicts better is asked of all logs, whether a gap matters of those to explain alone: no further log makes a gap none.
     """
-    explanations = _explanations(seen, found, beyond, curve)
+    explanations = _explanations(seen, found)
     fitted_ahead = foreseen(logs, explanations)
     weighed = weigh(without_idle(explanations, shares_of(explanations, fitted_ahead, logs, None))[0], fitted_ahead)
     matters_nats = weighed.ahead_nats
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else (), known)
     ahead = fitted_ahead if holdout is None else with_held_out(fitted_ahead, holdout)
-    explanations = explanations if holdout is None else replace(explanations, curve=curve_with_held_out(curve, holdout))
+    explanations = (
+        explanations if holdout is None else replace(explanations, curve=curve_with_held_out(found.curve, holdout))
+    )
     explanations, idle = without_idle(explanations, shares_of(explanations, ahead, logs, holdout))
     weighed = replace(weigh(explanations, ahead), ahead_nats=matters_nats)
-    seen = seen.because(*found.decisions, *idle, *foreseen_rules(ahead, weighed))
-    first = _likeliest(weighed, beyond)
+    seen = seen.because(*found.search.decisions, *idle, *foreseen_rules(ahead, weighed))
+    first = _likeliest(weighed, found.beyond)
     if holdout is None or first is None:
         return _Ranked(seen.because(*weighed.decisions), weighed, holdout)
     told, notes, rules = asked(holdout, first)
@@ -255,14 +257,15 @@ def _likeliest(weighed: Weighed, beyond: Retune | None) -> FittedHypothesis | No
     return weighed.fitted[0] if weighed.fitted else None
 
 
-def _explanations(seen: Seen, found: Search, beyond: Retune | None, curve: FittedCurve | None) -> Explanations:
+def _explanations(seen: Seen, found: _Found) -> Explanations:
     """All that may explain the gap; what swings beside noise is a form of its own."""
-    best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
+    fitted, beyond = found.search.fitted, found.beyond
+    best = fitted[0] if fitted[0].effects else fitted[-1]
     library = seen.case.library
     left = left_beside(form_scores(linearised(seen.case, best.fit)), [library.effects[name] for name in best.effects])
-    named = tuple(entry for entry in found.fitted if entry.effects)
+    named = tuple(entry for entry in fitted if entry.effects)
     alone, evidence = (None, None) if beyond is None else (beyond.fitted, beyond.score)
-    return Explanations(named, seen.retuned, library, left, alone, evidence, curve)
+    return Explanations(named, seen.retuned, library, left, alone, evidence, found.curve)
 
 
 def _checked(

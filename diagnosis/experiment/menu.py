@@ -21,20 +21,26 @@ PLAN_SEED = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
-    """One experiment: references (n, axes) by time t_s (n,) from 0, what is added to the inputs (n, inputs), when the motors are off.
+class Course:
+    """What is flown: references (n, axes) by time t_s (n,) from 0, what is added to the inputs (n, inputs), when the motors are off."""
 
-    `locked` axes are held, `weightless` mounts the rig so that gravity turns no axis, `speeds` logs what else it can measure; `effort`
-    is what it costs beside a plain run, from 0 up.
+    t_s: Array
+    reference: Array
+    dither: Array
+    off: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """One experiment: what it is called, what is to be done, what it costs beside a plain run, from 0 up, and what is flown.
+
+    `locked` axes are held, `weightless` mounts the rig so that gravity turns no axis, `speeds` logs what else it can measure.
     """
 
     name: str
     instruction: str
     effort: float
-    t_s: Array
-    reference: Array
-    dither: Array
-    off: NDArray[np.bool_]
+    course: Course
     locked: tuple[str, ...] = ()
     weightless: bool = False
     speeds: bool = False
@@ -138,7 +144,7 @@ class _Maker:
             (0, 0, 1, 1, -1, -1, 0.4, 0.4, -0.6, -0.6),
         )
         share = np.stack([np.interp(t_s + 0.8 * k, knots, levels) for k in range(len(self._room))], axis=1) * 0.8
-        return self._plan(name, text, effort, t_s, share * self._reach, locked=locked, speeds=speeds)
+        return Plan(name, text, effort, self._course(t_s, share * self._reach), locked=locked, speeds=speeds)
 
     def sweep(self, name: str, text: str, level: Room) -> Plan:
         """A slow triangle of one axis over all its room."""
@@ -147,7 +153,7 @@ class _Maker:
         moved = np.zeros((len(t_s), len(self._room)))
         column = self._room.index(level)
         moved[:, column] = wave - self._middle[column]
-        return self._plan(name, text, 0.1, t_s, moved)
+        return Plan(name, text, 0.1, self._course(t_s, moved))
 
     def weightless(self) -> Plan:
         """Pulses on the first axis with gravity out of play, all others locked."""
@@ -159,7 +165,9 @@ class _Maker:
         text = f"mount the rig turned by 90 degrees, so that gravity no longer turns the {heavy}, and send short pulses"
         locked = tuple(entry.axis for entry in self._room if entry.axis != heavy)
         still = np.zeros((len(t_s), len(self._room)))
-        return self._plan("rig turned by 90 degrees", text, 1.0, t_s, still, pulses, True, locked, weightless=True)
+        return Plan(
+            "rig turned by 90 degrees", text, 1.0, self._course(t_s, still, pulses, True), locked, weightless=True
+        )
 
     def coast_down(self) -> Plan:
         """Up to speed, motors off, and once more from the other side."""
@@ -167,7 +175,7 @@ class _Maker:
         wave = np.interp(t_s, [0.0, 2.0, 5.9, 6.0, 8.0, 12.0], [-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])[:, None]
         off = ((t_s > 1.6) & (t_s < 5.0)) | ((t_s > 7.6) & (t_s < 11.0))
         text = "ramp each axis through its middle, switch the motors off at speed, let it come to rest; from both sides"
-        return self._plan("coast-down", text, 0.1, t_s, wave * self._reach, off=off)
+        return Plan("coast-down", text, 0.1, self._course(t_s, wave * self._reach, off=off))
 
     def dithered(self) -> Plan:
         """All references still, a multisine on every input."""
@@ -177,36 +185,24 @@ class _Maker:
         waves = np.sin(2.0 * np.pi * np.array(DITHER_HZ)[:, None] * t_s[:, None, None] + phases).sum(axis=1)
         dither = DITHER * self._span * waves / np.abs(waves).max(axis=0)
         text = f"hold still and add a dither of a tenth of the range, {DITHER_HZ[0]} Hz to {DITHER_HZ[-1]} Hz, to every input"
-        return self._plan("dither", text, 0.1, t_s, np.zeros((len(t_s), len(self._room))), dither)
+        return Plan("dither", text, 0.1, self._course(t_s, np.zeros((len(t_s), len(self._room))), dither))
 
     def ramp(self) -> Plan:
         """Slow triangles of every axis, one after the other, without dither."""
         t_s = self._times(16.0)
         wave = np.interp(t_s, [0.0, 4.0, 12.0, 16.0], [0.0, 0.7, -0.7, 0.0])[:, None]
-        return self._plan(
-            "slow ramp", "ramp each reference slowly up and down, without dither", 0.0, t_s, wave * self._reach
-        )
+        text = "ramp each reference slowly up and down, without dither"
+        return Plan("slow ramp", text, 0.0, self._course(t_s, wave * self._reach))
 
     def _times(self, length_s: float) -> Array:
         return np.asarray(np.arange(round(length_s / self._period_s)) * self._period_s, dtype=float)
 
-    def _plan(
-        self,
-        name: str,
-        text: str,
-        effort: float,
-        t_s: Array,
-        moved: Array,
-        dither: Array | None = None,
-        off: NDArray[np.bool_] | bool = False,
-        locked: tuple[str, ...] = (),
-        *,
-        weightless: bool = False,
-        speeds: bool = False,
-    ) -> Plan:
+    def _course(
+        self, t_s: Array, moved: Array, dither: Array | None = None, off: NDArray[np.bool_] | bool = False
+    ) -> Course:
+        """References `moved` (n, axes) from the middle."""
         added = np.zeros((len(t_s), len(self._span))) if dither is None else dither
-        switched = np.broadcast_to(np.asarray(off, dtype=bool), t_s.shape)
-        return Plan(name, text, effort, t_s, self._middle + moved, added, switched, locked, weightless, speeds)
+        return Course(t_s, self._middle + moved, added, np.broadcast_to(np.asarray(off, dtype=bool), t_s.shape))
 
 
 def _shown(value: float, unit: str) -> str:

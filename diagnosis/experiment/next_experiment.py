@@ -97,7 +97,7 @@ def law_of(case: Case, plan: Plan) -> StandIn | None:
     room = rooms(case)
     at = {entry.axis: entry.middle for entry in room}
     size = np.array([0.3 * entry.reach for entry in room])
-    return stand_in(case.library.bound, at, size, float(plan.t_s[1]), plan.locked)
+    return stand_in(case.library.bound, at, size, float(plan.course.t_s[1]), plan.locked)
 
 
 def _worth(trial: Trial, pairs: Mapping[tuple[int, int], float]) -> tuple[float, float]:
@@ -130,7 +130,7 @@ def _told(
         "expected_outcome": _outcome(case, best, first, names),
         "separation": round(apart, 1),
         "within_limits": best.within_limits,
-        "duration_s": round(float(best.plan.t_s[-1] + best.plan.t_s[1]), 2),
+        "duration_s": round(float(best.plan.course.t_s[-1] + best.plan.course.t_s[1]), 2),
     }
 
 

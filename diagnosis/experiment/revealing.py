@@ -40,7 +40,7 @@ def revealing_experiment(case: Case, hypothesis: Hypothesis) -> Mapping[str, Any
         "expected_outcome": f"{shown} of {len(names)} effects would show at the size that they may well have; "
         f"in these logs {now} do",
         "within_limits": flown.within_limits,
-        "duration_s": round(float(plan.t_s[-1] + plan.t_s[1]), 2),
+        "duration_s": round(float(plan.course.t_s[-1] + plan.course.t_s[1]), 2),
     }
 
 

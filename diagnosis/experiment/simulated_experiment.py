@@ -51,24 +51,24 @@ def setting(case: Case, plan: Plan) -> Case:
 
 def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypothesis) -> SimulatedExperiment | None:
     """Fly the plan under a hypothesis; None where the plant leaves all bounds or the law's arm hits a stop and stays there."""
-    library = case.library
+    library, course = case.library, plan.course
     model, own = library.bound.model, len(library.states)
     start_s = max(float(flight.log.t_s[-1]) for flight in case.flights)
     x0 = np.asarray(start_state(library.bound, law.rest.x0), dtype=float)
     plant = Flown(case, _mounted(case, plan, hypothesis), x0, start_s, locked=plan.locked)
     columns = [k for k, axis in enumerate(steered(model)) if axis.name not in plan.locked]
-    u, z = np.empty((len(plan.t_s), len(model.inputs))), np.zeros(len(law.tracked))
-    y, x = np.empty((len(plan.t_s), len(model.outputs))), np.empty((len(plan.t_s), own))
+    u, z = np.empty((len(course.t_s), len(model.inputs))), np.zeros(len(law.tracked))
+    y, x = np.empty((len(course.t_s), len(model.outputs))), np.empty((len(course.t_s), own))
     idle = law.within(np.zeros(len(model.inputs)))
-    for k in range(len(plan.t_s)):
+    for k in range(len(course.t_s)):
         y[k], x[k] = plant.measured(), plant.x[:own]
-        if plan.off[k]:
-            wanted, z = idle + plan.dither[k], np.zeros(len(z))
+        if course.off[k]:
+            wanted, z = idle + course.dither[k], np.zeros(len(z))
         else:
-            wanted, z = law.command(x[k], z, plan.reference[k, columns])
-            wanted = wanted + plan.dither[k]
+            wanted, z = law.command(x[k], z, course.reference[k, columns])
+            wanted = wanted + course.dither[k]
         u[k] = law.within(wanted)
-        plant.advance(u[k], start_s + float(plan.t_s[k]) + law.period_s)
+        plant.advance(u[k], start_s + float(course.t_s[k]) + law.period_s)
         if plant.lost:
             return None
     extra = {}
@@ -78,14 +78,14 @@ def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypoth
         case.flights[0].log.columns,
         law.period_s,
         "closed",
-        start_s + plan.t_s,
+        start_s + course.t_s,
         u,
         y,
         extra=extra,
         locked=plan.locked,
     )
     clipped = np.any((u <= law.low) | (u >= law.high), axis=1)
-    kept = plan.off.any() or np.mean(clipped) <= decisions.MOST_CLIPPED
+    kept = course.off.any() or np.mean(clipped) <= decisions.MOST_CLIPPED
     return SimulatedExperiment(log, bool(kept and _off_the_stops(case, plan, x)))
 
 
@@ -99,10 +99,10 @@ def _mounted(case: Case, plan: Plan, hypothesis: Hypothesis) -> Hypothesis:
 
 def _off_the_stops(case: Case, plan: Plan, x: Array) -> bool:
     """Whether no free axis touched a stop while its law was on."""
-    bound = case.library.bound
-    flying = ~plan.off
+    bound, course = case.library.bound, plan.course
+    flying = ~course.off
     for axis in bound.model.axes:
-        if axis.position is None or axis.name in plan.locked or not flying.any() or plan.off.any():
+        if axis.position is None or axis.name in plan.locked or not flying.any() or course.off.any():
             continue
         way = x[flying, case.library.states.index(str(axis.position))]
         low, high = (None if s is None else bound.number(s) for s in (axis.lower, axis.upper))

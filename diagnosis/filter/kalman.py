@@ -67,6 +67,20 @@ def slope_of(noise: Noise, other: Noise, by: float) -> Noise:
 
 
 @dataclass(frozen=True, eq=False)
+class Wanted:
+    """What a pass is to leave beside innovations and states: by which `columns` of p and by which slopes of the noise, `noises`, its
+    likelihood is differentiated; whether the slopes of each innovation and the gains are kept."""
+
+    columns: Sequence[int] = ()
+    noises: Sequence[Noise] = ()
+    slopes: bool = False
+    gains: bool = False
+
+
+INNOVATIONS = Wanted()
+
+
+@dataclass(frozen=True, eq=False)
 class Pass:
     """One pass over a log of n rows: whitened innovations w (n, slots) and their variances s, NaN where nothing was measured; slopes
     dw (n, slots, columns) or None, their products `gram` = dw'dw and `pull` = dw'w; predicted states x and filtered ones (n, states).
@@ -107,17 +121,14 @@ class Filter:
         noise: Noise,
         slots: Sequence[int],
         *,
-        columns: Sequence[int] = (),
-        noises: Sequence[Noise] = (),
-        keep_slopes: bool = False,
         locked: Sequence[str] = (),
-        keep_gains: bool = False,
+        wanted: Wanted = INNOVATIONS,
     ) -> Pass | None:
-        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none; `columns` indices into p; `noises`
-        the slopes of the noise by each of its numbers.
+        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none.
 
         None where the state left all bounds or rattles without end: the parameters do not fit at all.
         """
+        columns, noises = wanted.columns, wanted.noises
         assert len(columns) <= self.lib.MAX_COLUMNS
         assert len(noises) <= self.lib.MAX_NOISES
         width, steps = max(slots) + 1, len(filter_input.t_s)
@@ -131,8 +142,7 @@ class Filter:
                 "slot": np.array(slots, dtype=np.int32),
             }
         )
-        found = self._found(filter_input, width, len(columns), keep_slopes, keep_gains)
-        found |= {"score": np.zeros(len(noises)), "information": np.zeros((len(noises), len(noises)))}
+        found = self._found(filter_input, width, wanted)
         request = self._request("filter_request *", given | found)
         request.steps, request.columns, request.slots, request.noises = steps, len(columns), width, len(noises)
         request.rest_s, request.stated_rad_s = noise.rest_s, self.stated_rad_s
@@ -147,15 +157,14 @@ class Filter:
         """The noise with one doubt of friction, which counts for nothing, where there is no axis."""
         return noise if self.axes else replace(noise, rub=np.zeros(1))
 
-    def _found(
-        self, filter_input: FilterInput, width: int, columns: int, slopes: bool, gains: bool
-    ) -> dict[str, Array | None]:
+    def _found(self, filter_input: FilterInput, width: int, wanted: Wanted) -> dict[str, Array | None]:
         """Room for what a run leaves, as in filter.h; None for what is not kept."""
         rows, steps, n, outputs = filter_input.rows, len(filter_input.t_s), self.states, self.outputs
+        columns, noises, gains = len(wanted.columns), len(wanted.noises), wanted.gains
         return {
             "w": np.full((rows, width), np.nan),
             "s": np.full((rows, width), np.nan),
-            "dw": np.zeros((rows, width, columns)) if columns and slopes else None,
+            "dw": np.zeros((rows, width, columns)) if columns and wanted.slopes else None,
             "gram": np.zeros((columns, columns)),
             "pull": np.zeros(columns),
             "x": np.empty((rows, n)),  # all of it is filled: every row is an instant
@@ -163,6 +172,8 @@ class Filter:
             "F": np.zeros((steps, n, n)) if gains else None,
             "K": np.zeros((steps, outputs, n)) if gains else None,
             "H": np.zeros((steps, outputs, n)) if gains else None,
+            "score": np.zeros(noises),
+            "information": np.zeros((noises, noises)),
         }
 
     def _request(self, kind: str, arrays: Mapping[str, NDArray[Any] | None]) -> Any:
@@ -210,7 +221,7 @@ class Filter:
 
     def pulls(self, filter_input: FilterInput, run: Pass, slots: Sequence[int]) -> Array:
         """E'w (steps, states) by a unit that is added to each state over each step, E its answer in the whitened innovations w (rows,
-        slots): the adjoint of `respond`, which takes the gains that a run with `keep_gains` left."""
+        slots): the adjoint of `respond`, which takes the gains that a run that keeps them left."""
         assert run.gains is not None
         counts, places = _counted(filter_input, slots)
         found = np.empty((len(filter_input.t_s), self.states))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput, variance_stated
-from diagnosis.filter.kalman import Noise, Pass, slope_of
+from diagnosis.filter.kalman import Noise, Pass, Wanted, slope_of
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
@@ -230,18 +230,8 @@ def passes(
         filter_input = filter_input_under(case, compiled, flight, here)
         x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, here)
         others = [(noise_of(case, compiled, flight, other.over(flight)), by) for other, by in noises]
-        run = compiled.filter.run(
-            filter_input,
-            p,
-            x0,
-            noise,
-            case.slots,
-            columns=columns,
-            noises=[slope_of(noise, other, by) for other, by in others],
-            keep_slopes=slopes,
-            locked=flight.locked,
-            keep_gains=gains,
-        )
+        wanted = Wanted(columns, [slope_of(noise, other, by) for other, by in others], slopes, gains)
+        run = compiled.filter.run(filter_input, p, x0, noise, case.slots, locked=flight.locked, wanted=wanted)
         return None if run is None else replace(run, log_likelihood=run.log_likelihood + filter_input.known)
 
     runs = thread_map(over, case.flights)

@@ -151,4 +151,4 @@ def test_the_stand_in_law_holds_an_unstable_plant_along_its_references(case: Cas
     flown = simulate_experiment(case, plan, law, nominal_hypothesis(case, -4.0))
     assert flown is not None
     assert flown.within_limits
-    assert np.abs(flown.log.y - plan.reference)[100:].max() < 0.15
+    assert np.abs(flown.log.y - plan.course.reference)[100:].max() < 0.15
