@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
+from diagnosis.confirmation import confirmed_by, is_noise, may_be_missing, of_consequence
 from diagnosis.decide.clock import clock_in_doubt
 from diagnosis.decide.consequence import curve_that_predicts, curve_with_held_out, foreseen, foreseen_rules
 from diagnosis.decide.doubt import contradicting, doubt
@@ -25,14 +26,13 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.result import Exit, Judged, Material, Result, Seen
+from diagnosis.screening import alarmed, alone_of, beside_noise, detected_anew, seen_of
 from diagnosis.search.beam import Search, search, with_twins
 from diagnosis.search.draughts import Draught, draught
 from diagnosis.search.free_curve import FittedCurve, free_curve
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
-from diagnosis.seeing import alarmed, alone_of, beside_noise, detected_anew, seen_of
-from diagnosis.standing import confirmed_by, is_noise, may_be_missing, of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
 from records.reasons import Note

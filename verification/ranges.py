@@ -1,4 +1,4 @@
-"""The ranges of states and inputs for which the rounding bound is proved, and whether a flight stayed within them."""
+"""The ranges of states and inputs for which the rounding bound is proved."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -16,8 +16,8 @@ from diagnosis.filter.kalman import Pass
 from diagnosis.fit.gauss_newton import flat_slopes, likelihood, size_scale, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
+from diagnosis.library.coarse_grid import coarse_step
 from diagnosis.library.effect_library import EffectLibrary
-from diagnosis.library.lattice import coarse_step
 from jobs.thread_map import thread_map
 from sim.effect import Effect, Role, Values
 

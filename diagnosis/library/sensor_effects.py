@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput, late, variance_stated
+from diagnosis.library.coarse_grid import grid_evidence
 from diagnosis.library.effect_library import EffectLibrary
-from diagnosis.library.lattice import grid_evidence
 from diagnosis.library.play import behind_play
 from diagnosis.library.reading_spans import charge, less_sure
 from sim.effect import Values

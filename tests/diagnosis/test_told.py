@@ -9,6 +9,7 @@ from diagnosis import decisions
 from diagnosis.answer import no_gap
 from diagnosis.baselines.bic import by_bic
 from diagnosis.baselines.residual_size import by_residual_size
+from diagnosis.confirmation import of_consequence
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.detection import detect
 from diagnosis.detect.score_tests import ScoreTest
@@ -22,7 +23,6 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Seen
 from diagnosis.search.retune import places_of, retune
-from diagnosis.standing import of_consequence
 from diagnosis.validate.prediction import predictions
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.reasons import Note

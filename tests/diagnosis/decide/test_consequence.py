@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
+from diagnosis.confirmation import of_consequence
 from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.weighing import Explanations, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
@@ -15,7 +16,6 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Exit, Judged, Seen
-from diagnosis.standing import of_consequence
 from diagnosis.validate.fitted_logs import FittedLogs
 from tests.diagnosis.arm import arm_case, arm_log, settled
 from tests.diagnosis.nominal import nominal_fit

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
+from diagnosis.confirmation import may_be_missing, of_consequence
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.weighing import Explanations, Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
@@ -19,7 +20,6 @@ from diagnosis.fit.nominal import plain_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Exit, Judged, Result, Seen
-from diagnosis.standing import may_be_missing, of_consequence
 from diagnosis.validate.judged_logs import JudgedLogs
 from diagnosis.validate.score import HORIZONS_S, Errors, Score
 from records.log import RunLog

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from blind.calibration.fit import UNLEARNED
+from diagnosis.confirmation import confirmed_by
 from diagnosis.decide import prior
 from diagnosis.decide.weighing import Explanations, weigh
 from diagnosis.detect.detection import Detection, FormScores
@@ -18,7 +19,6 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Seen
 from diagnosis.search.beam import Search
-from diagnosis.standing import confirmed_by
 from sim.added_effects import every_effect
 from sim.effect import EffectParameter
 from tests.plants import bound

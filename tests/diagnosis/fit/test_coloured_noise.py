@@ -13,7 +13,7 @@ from diagnosis.fit.gauss_newton import fit, likelihood_of
 from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.hypothesis import noise_on, nominal_hypothesis
 from diagnosis.library.reading_noise import ReadingNoise
-from diagnosis.seeing import beside_noise, scored
+from diagnosis.screening import beside_noise, scored
 from records.log import RunLog
 from sim.effect import Role
 from tests.diagnosis.arm import LONG_S, PERIOD_S, arm, arm_case, arm_log

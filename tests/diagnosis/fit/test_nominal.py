@@ -8,7 +8,7 @@ import pytest
 from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
 from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory_from
 from diagnosis.hypothesis.case import Case
-from diagnosis.seeing import detected
+from diagnosis.screening import detected
 from tests.diagnosis.arm import arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
 

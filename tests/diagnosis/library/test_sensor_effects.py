@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from diagnosis.filter.filter_input import FilterInput, beginning, filter_input_of, late
-from diagnosis.library import lattice
+from diagnosis.library import coarse_grid
+from diagnosis.library.coarse_grid import coarse_step, grid_evidence
 from diagnosis.library.effect_library import effect_library
-from diagnosis.library.lattice import coarse_step, grid_evidence
 from diagnosis.library.play import behind_play, pushing
 from diagnosis.library.sensor_effects import sensed, unsure_when
 from records.log import RunLog
@@ -110,7 +110,7 @@ def test_what_the_search_for_a_grid_keeps_to_itself_decides_nothing(
 ) -> None:
     """Truth: a grid of 1.7 counts without noise and of 2.47 with it, one of 75.3 counts of which few points are read, and none."""
     wave, noise = np.sin(np.linspace(0.0, 30.0, 4000)), np.random.default_rng(2).normal(0.0, 0.2 * STEP, 4000)
-    monkeypatch.setattr(lattice, constant, factor * getattr(lattice, constant))
+    monkeypatch.setattr(coarse_grid, constant, factor * getattr(coarse_grid, constant))
     for steps, angle in ((1.7, 1.2 * wave**3), (2.47, 1.2 * wave**3), (75.3, 0.35 + 0.25 * wave)):
         grid = steps * STEP
         read = STEP * np.round((grid * np.round(angle / grid) + (noise if steps == 2.47 else 0.0)) / STEP)

@@ -30,7 +30,7 @@ def frequency_page(
     truth: Truth | None = None,
     flown: LateralFlight | None = None,
 ) -> Page:
-    """The whole page, with its `pictures`; the `truth` stands beside what was found; `flown` is a flight of a helicopter."""
+    """The whole page; `plots` are its pictures by name, the `truth` stands beside what was found; `flown` is a flight of a helicopter."""
     estimates = found.result.estimates
     told = sum(entry.identified for entry in estimates)
     quality = frequency_quality(found, truth)

@@ -23,7 +23,7 @@ from sim.bind import BoundPlant
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_bound
-from verification.held import demand_held
+from verification.settling import demand_settled
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def design_plant(bound: BoundPlant, arithmetic: str = "float32", where: str = ""
 def _fly(bound: BoundPlant, table: FlownTable, arithmetic: str) -> None:
     """The gate's last question, put to the law that flies."""
     with stage(f"flying the generated law in {arithmetic} from rest"):
-        demand_held(bound, table, arithmetic)
+        demand_settled(bound, table, arithmetic)
 
 
 def roll_off_trade(designed: Designed) -> tuple[TradePoint, ...]:

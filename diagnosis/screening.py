@@ -1,0 +1,174 @@
+"""Whether there is a gap at all: the plant alone as its logs have it, what of the library shows beside it, and whether names are sought
+beside noise with a memory."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis import decisions
+from diagnosis.decisions import decided
+from diagnosis.detect.detection import detect
+from diagnosis.detect.linearisation import linearised
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.fit.between_rows import between_rows, with_commands
+from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory, with_memory_from
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.usual import with_usual
+from diagnosis.library.effect_library import effect_library
+from diagnosis.result import Held, Material, Seen
+from diagnosis.search.beam import Alone, FirstFits, alone, first_fits
+from diagnosis.search.draughts import gust_shares, without_memory
+from diagnosis.search.lost_frames import with_losses
+from diagnosis.validate.fitted_logs import FittedLogs
+from records.reasons import Decision
+from sim.added_effects import without_effects
+from sim.bind import BoundPlant
+
+
+def seen_of(bound: BoundPlant, material: Material) -> Seen:
+    """Ask whether there is a gap at all."""
+    library = effect_library(without_effects(bound))
+    library.prepare()
+    split = len(material.logs)
+    case = make_case(library, material.logs, material.used[:split], bound)
+    checked = make_case(library, material.holdout, material.used[split:], bound, split) if material.holdout else None
+    return detected(case, checked)
+
+
+def detected(case: Case, checked: Case | None) -> Seen:
+    """Fit the plant alone, and score the library beside it; where a gap shows, once more from where the best single effect left the plant's
+    numbers, as slopes from the stated ones may lead to another hill."""
+    return _detected(case, checked, best_plain_fit(case), with_memory)
+
+
+def detected_anew(case: Case, seen: Seen, beside: FittedHypothesis | None) -> Seen:
+    """The same of another reading of the logs, from the plant as it was fitted before; `beside` is what was fitted already."""
+    known = seen.retuned.fit.hypothesis
+
+    def noisy(case: Case, found: Fit) -> Fit:
+        return with_memory_from(case, found, known)
+
+    return _detected(case, seen.checked, plain_from(case, known), noisy, beside)
+
+
+def _detected(
+    case: Case,
+    checked: Case | None,
+    as_held: Fit,
+    noisy: Callable[[Case, Fit], Fit],
+    beside: FittedHypothesis | None = None,
+) -> Seen:
+    commands, nominal, between = between_rows(case, as_held)
+    held = Held(case, as_held, between[0].value or 0.0) if nominal is not as_held else None
+    case, checked = with_commands(case, commands), None if checked is None else with_commands(checked, commands)
+    nominal = noisy(case, nominal)
+    seen = replace(scored(case, checked, nominal, between), held=held, beside=beside)
+    if not alarmed(seen.detection.p):
+        return seen
+    seen = replace(seen, still=_still(seen))
+    names = _first_fits(seen.still or seen)
+    best = names.best
+    again = plain_beside(case, best.fit, nominal)
+    if again is None:
+        return _with_names(seen, names)
+    gain = evidence(again, case.library.effects) - seen.retuned.evidence
+    better = gain > decisions.TAKEN_IN
+    outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
+    rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
+    if not better:
+        return _with_names(seen, names).because(rule)
+    return replace(scored(case, checked, with_memory(case, again), (*between, rule)), held=held, beside=beside)
+
+
+def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:
+    """What the plant alone as fitted leaves to the library, and whether that is a gap."""
+    case = with_usual(case, nominal.hypothesis)
+    linearisation = linearised(case, nominal)
+    case, lossy = with_losses(case, linearisation)
+    linearisation = replace(linearisation, case=case)
+    score_tests = score_effects(case, linearisation, case.library.candidates)
+    retuned = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
+    detection = detect(case, linearisation, score_tests, lossy)
+    rules = (*rules, *detection.decisions, false_alarm("logs", detection.p))
+    return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
+
+
+def beside_noise(seen: Seen) -> Seen:
+    """The same, from the plant without noise with a memory where a name is to be had for it: such noise follows any motion row by row, as
+    slow as it is, and beside it a name would explain only what is fast. What follows does not foresee, so the best name there must
+    predict the logs better over a second; where nothing shows beside the noise, it must be by far likelier."""
+    still = seen.still or _still(seen)
+    if still is None:
+        return seen
+    names = alone_of(still)
+    best = names.best(1)[0]
+    rule, stands = (_foreseen if alarmed(seen.detection.p) else _over_noise)(seen, best)
+    if not stands:
+        return seen.because(rule)
+    chance = min(seen.detection.p, float(np.exp(-max(best.evidence - seen.retuned.evidence, 0.0))))
+    found = replace(still, begun=names, detection=replace(seen.detection, p=chance), decisions=seen.decisions)
+    return found.because(rule)
+
+
+def alone_of(seen: Seen) -> Alone:
+    """Its single effects, fitted where that was not done yet."""
+    return seen.begun or alone(seen.case, _first_fits(seen))
+
+
+def _first_fits(seen: Seen) -> FirstFits:
+    return first_fits(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
+
+
+def alarmed(p: float) -> bool:
+    """Whether so large a gap has a chance without one that is small enough to look for a cause."""
+    return p <= decisions.ALARM
+
+
+def false_alarm(of: str, p: float) -> Decision:
+    """The rule that asks whether a gap of the chance `p` without one is worth a cause."""
+    return decided("false_alarm", of, p, decisions.ALARM, "a cause is looked for" if alarmed(p) else "no gap")
+
+
+def _with_names(seen: Seen, names: FirstFits) -> Seen:
+    """The same with single effects as fitted from where they begin: without noise with a memory where the plant has any, as beside that
+    they explain little."""
+    found = alone(seen.case, names)
+    if seen.still is None:
+        return replace(seen, begun=found)
+    return replace(seen, still=replace(seen.still, begun=found))
+
+
+def _foreseen(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
+    """Whether the best name without noise with a memory predicts the logs better than the plant with it, and the rule; or whether that is
+    larger than noise, as where two effects are missing at once."""
+    shares = gust_shares(seen.case, seen.retuned.fit.hypothesis)
+    largest = max(shares, key=lambda name: shares[name], default="plant")
+    without = "a cause is looked for without noise"
+    if shares.get(largest, 0.0) > decisions.USUAL_GUST:
+        return decided("beyond_noise", largest, shares[largest], decisions.USUAL_GUST, without), True
+    gain = FittedLogs(seen.case).gain(best.fit.hypothesis, seen.retuned.fit.hypothesis) if best.effects else 0.0
+    stands = gain >= decisions.MATTERS
+    outcome = without if stands else "a cause is looked for beside noise"
+    return decided("beside_noise", " + ".join(best.effects) or "plant", gain, decisions.MATTERS, outcome), stands
+
+
+def _over_noise(seen: Seen, best: FittedHypothesis) -> tuple[Decision, bool]:
+    """Whether it is likelier, by as much as anything further must gain, and the rule."""
+    gain = best.evidence - seen.retuned.evidence
+    stands = bool(best.effects) and gain > decisions.TAKEN_IN
+    outcome = "a cause is looked for" if stands else "noise"
+    return decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.TAKEN_IN, outcome), stands
+
+
+def _still(seen: Seen) -> Seen | None:
+    """The same from the plant without noise with a memory; None where it has none, or cannot follow its logs then."""
+    case = seen.case
+    still = without_memory(case, seen.retuned)
+    if still is None:
+        return None
+    linearisation = linearised(case, still.fit)
+    score_tests = tuple(score_effects(case, linearisation, case.library.candidates))
+    return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests, begun=None, still=None)
