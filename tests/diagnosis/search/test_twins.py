@@ -1,7 +1,9 @@
 """What data hardly tell from a name: fitted in its place, compared under the noise that each leaves, and told beside it."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from diagnosis.decide.weighing import Weighed, first_share
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.foretold import foretold_nats
-from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.search.beam import Search, beam_of, with_twins
@@ -29,8 +31,13 @@ GUST = {"arm.gust": {"sigma": 6e-5, "T": 0.5}}
 
 
 def supposed(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
-    """A hypothesis fitted to its end under white noise, from the arm as stated."""
-    begun = fit(case, nominal_hypothesis(case, FIRST_NOISE).with_effects(effects))
+    """A hypothesis fitted to its end under white noise, from the arm as stated; the same for all who ask for it."""
+    return _supposed(case, json.dumps(effects))
+
+
+@cache
+def _supposed(case: Case, effects: str) -> FittedHypothesis:
+    begun = fit(case, nominal_hypothesis(case, FIRST_NOISE).with_effects(json.loads(effects)))
     assert begun is not None
     end = refined(case, as_fitted(case, begun))
     assert end is not None
@@ -39,8 +46,25 @@ def supposed(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothes
 
 def named(*effects: str) -> FittedHypothesis:
     """Effects alone, as a search has them."""
-    plain = nominal_fit(arm_case(arm_log(seed=31)))
-    return FittedHypothesis(effects, plain, 1.0)
+    return FittedHypothesis(effects, plain(), 1.0)
+
+
+@cache
+def plain() -> Fit:
+    """The arm as stated, fitted to a run of it."""
+    return nominal_fit(arm_case(arm_log(seed=31)))
+
+
+@cache
+def rubbing() -> Case:
+    """0.4 mN m of dry friction, the same at all speeds."""
+    return arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=71))
+
+
+@cache
+def lagging() -> Case:
+    """A lag of the drive and no noise with a memory."""
+    return arm_case(arm_log(LAG, seed=43))
 
 
 def beside_noise(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
@@ -125,7 +149,7 @@ def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> No
 
 def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew() -> None:
     # Truth: 0.4 mN m of dry friction, the same at all speeds: Stribeck's that falls far beyond all motion is hardly another.
-    case = arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=71))
+    case = rubbing()
     rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
     slope = supposed(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
     assert slope.evidence < rub.evidence - 100.0  # a bell narrower than a count a row
@@ -138,7 +162,7 @@ def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew()
 
 def test_a_twin_that_was_found_better_is_kept() -> None:
     # The same twin, known to lack 31 nats: too much to be near, and less than a fit in the place of the friction ends short of it.
-    case = arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=71))
+    case = rubbing()
     rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
     known = supposed(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
     known = replace(known, evidence=rub.evidence - decisions.NEAR_BEST - 1.0)
@@ -201,7 +225,7 @@ def test_noise_is_sought_beside_what_it_could_bring_near_as_parameters_come_back
 def test_where_the_likeliest_has_none_noise_is_sought_beside_what_foretells_some() -> None:
     # Truth: a lag of the drive and no noise with a memory. Without the lag innovations foretell some, a third of what such noise may gain:
     # at twice that short it is asked, at four times not.
-    case = arm_case(arm_log(LAG, seed=43))
+    case = lagging()
     drive, pull = supposed(case, LAG), supposed(case, {"arm.offset_force": {"offset": 1e-5}})
     runs = [passes(case, entry.fit.hypothesis) for entry in (pull, drive)]
     promised = float(np.subtract(*(foretold_nats(run) for run in runs if run is not None)))
@@ -256,7 +280,7 @@ def test_a_corner_that_was_fitted_sharp_is_begun_round_again() -> None:
 
 
 def test_noise_beside_a_name_is_left_alone_where_the_logs_tell_of_none() -> None:
-    case = arm_case(arm_log(LAG, seed=43))
+    case = lagging()
     plain = supposed(case, LAG)
     assert beside_noise(case, [plain]) == [plain]
     assert coloured_noise_of(case, plain.fit.hypothesis).effects.keys() == plain.fit.hypothesis.effects.keys()
