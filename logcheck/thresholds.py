@@ -65,7 +65,7 @@ LEAST_CLIPS = Count(
     "at one level, that the output leaves at full speed: play and dry friction stand so once where they turn back",
     "128 sealed cases: five stand so once, none twice",
 )
-MOST_CLIPPED = Limit(
+MOST_CUT_OFF = Limit(
     0.5,
     "share",
     "of the stands at an end of a range, that the output leaves at full speed: the sensor ends there; no honest log has as many",
@@ -81,7 +81,7 @@ MOVED_FAR = Limit(0.5, "share of an input's range", "that moves any axis that is
 ANSWER_TIMES = Limit(3.0, "times the most rows", "in which an output answers such a move elsewhere")
 ANSWER_ROWS = Count(50, "rows", "unanswered at least", "1 058 parts of honest logs: 24 once, of a heater cut short")
 LEAST_ANSWERS = Count(20, "answers", "fewer do not tell how an output answers")
-ASKED = Count(200, "rows", "of a log, spread evenly: time")
+ROWS_ASKED = Count(200, "rows", "of a log, spread evenly: time")
 
 # foretold
 FORETOLD_S = Limit(0.3, "s", "ahead: long enough for an axis to leave its rest, too short for a wrong plant to stray")

@@ -69,7 +69,7 @@ def _ends(read: Readings, step: float) -> Iterator[_End]:
         own = [stand for stand in stands if read.values[stand[0]] == level]
         judged = [share for stand in own if (share := _evenness(read, *stand, least)) > 0.0]
         even = sum(share > thresholds.EVEN for share in judged)
-        if even >= max(thresholds.LEAST_CLIPS, thresholds.MOST_CLIPPED * len(judged)) or (
+        if even >= max(thresholds.LEAST_CLIPS, thresholds.MOST_CUT_OFF * len(judged)) or (
             own and never_repeats and level != 0.0
         ):
             yield _End(level, how, own)

@@ -120,7 +120,7 @@ def _off(log: RunLog, bound: BoundPlant, column: str, stands: Rows, first: int, 
 
 def _some(rows: Places) -> Places:
     """So many of the rows, evenly."""
-    return rows[:: max(1, len(rows) // int(thresholds.ASKED))]
+    return rows[:: max(1, len(rows) // int(thresholds.ROWS_ASKED))]
 
 
 def _off_behind(log: RunLog, bound: BoundPlant, column: str, rows: Places, ahead: int) -> Array:

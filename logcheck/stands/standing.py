@@ -156,7 +156,7 @@ def _unanswered(values: Array, u: Array, begin: int) -> tuple[int, int]:
     here = _moved_at(u[begin:], far)
     if here is None:
         return 0, 0
-    asked = np.linspace(0, begin - 1, min(begin, thresholds.ASKED)).astype(int) if begin else np.zeros(0, int)
+    asked = np.linspace(0, begin - 1, min(begin, thresholds.ROWS_ASKED)).astype(int) if begin else np.zeros(0, int)
     answers = [_answered_after(values[row:], u[row:], far) for row in asked.tolist()]
     known = [rows for rows in answers if rows is not None]
     return (len(values) - 1 - begin - here, max(known)) if len(known) >= thresholds.LEAST_ANSWERS else (0, 0)
