@@ -20,6 +20,7 @@ SHORTEST_HOLD_S = 3.0  # a reference held for less has no steady part to judge
 # A step has settled where the angle stays so near; seed 001 calls errors of 0.5 to 1 deg good.
 SETTLED_RAD = math.radians(1.0)
 SETTLED_SHARE = 0.02  # of its largest step, for what is no angle: what the field calls settled
+AT_LIMIT_SHARE = 1e-3  # of an input's range: one step of a PWM of 1000 ticks; nearer to a limit it stands at it
 LEFT_SHARE = 0.2  # likewise, as LEFT_RAD is for an angle: ten times what counts as settled; no flight set it
 
 
@@ -31,8 +32,8 @@ class Tracking:
     from such a change until it stays within SETTLED_RAD, or of no angle SETTLED_SHARE, None where it does not before the next one;
     `steady_error_rad` the largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole
     flight; `push_rad` the largest |error| in the holds that another output's change began: what the axes do to each other. `activity` is
-    what the output's own input did for that over the whole flight, `step_rad` the output's largest step. `_rad` and `_V` are the units of
-    output and input.
+    what the output's own input did for that over the whole flight, `step_rad` the output's largest step, `at_limit_s` the longest time for
+    which the input stood at `limit_V`, one of its limits, without a pause. `_rad` and `_V` are the units of output and input.
     """
 
     output: str
@@ -45,6 +46,13 @@ class Tracking:
     input: str
     activity: Activity
     step_rad: float = 0.0
+    at_limit_s: float = 0.0
+    limit_V: float = 0.0
+
+    @property
+    def is_out_of_reach(self) -> bool:
+        """Whether its input stood at a limit for so long that no law could have done more: as long as errors at rest are asked for."""
+        return self.at_limit_s >= STEADY_S
 
     @property
     def is_angle(self) -> bool:
@@ -87,8 +95,11 @@ def _how_left(entry: Tracking) -> str:
     return ""
 
 
-def tracking(log: RunLog, loop: Loop) -> Tracking:
-    """Judge one loop's output in a flight whose log has the references of all its loops; a log without such a hold gives zeros."""
+def tracking(log: RunLog, loop: Loop, limits_V: tuple[float, float] = (-np.inf, np.inf)) -> Tracking:
+    """Judge one loop's output in a flight whose log has the references of all its loops; a log without such a hold gives zeros.
+
+    `limits_V` are those of the loop's input.
+    """
     output, own_input = loop.output, loop.input
     referred = [name for name in log.columns.outputs if reference_name(name) in log.extra]
     references = {name: log.column(reference_name(name)) for name in referred}
@@ -102,6 +113,7 @@ def tracking(log: RunLog, loop: Loop) -> Tracking:
     error = reference - measured
     step = max((abs(hold.change) for hold in steps), default=0.0)
     band = SETTLED_RAD if unit_suffix(output) == "rad" else SETTLED_SHARE * step
+    at_limit_s, limit_V = _longest_at_limit(log.t_s, log.column(own_input), limits_V)
     settling = [settling_s(log.t_s[hold.begin : hold.end], error[hold.begin : hold.end], band) for hold in steps]
     return Tracking(
         output=output,
@@ -114,7 +126,23 @@ def tracking(log: RunLog, loop: Loop) -> Tracking:
         input=own_input,
         activity=activity(log.t_s, log.column(own_input)),
         step_rad=step,
+        at_limit_s=at_limit_s,
+        limit_V=limit_V,
     )
+
+
+def _longest_at_limit(t_s: Array, u_V: Array, limits_V: tuple[float, float]) -> tuple[float, float]:
+    """The longest time without a pause at one of its limits, and which; 0 of an input without limits."""
+    low, high = limits_V
+    if not np.isfinite(high - low):
+        return 0.0, 0.0
+    return max((_longest_s(t_s, np.abs(u_V - limit) <= AT_LIMIT_SHARE * (high - low)), limit) for limit in limits_V)
+
+
+def _longest_s(t_s: Array, where: NDArray[np.bool_]) -> float:
+    """The longest time from the first to the last of rows in a line."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], where, [False]]).astype(int)))
+    return max((float(t_s[last - 1] - t_s[first]) for first, last in edges.reshape(-1, 2)), default=0.0)
 
 
 def settling_s(t_s: Array, error_rad: Array, band_rad: float = SETTLED_RAD) -> float | None:

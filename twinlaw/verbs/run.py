@@ -82,14 +82,14 @@ def run(chosen: argparse.Namespace) -> int:
         facts |= {"quality": quality_facts(flight_quality(flight.tracking)), "sizes": asdict(image.sizes)}
         print(json.dumps(facts))
         return 0
+    if gone := left_sentence(flight.tracking):
+        print(f"{gone}\n")
     print(console.table(design_rows(designed.report), design_heading(designed.report)))
     print()
     print(console.table(verification_rows(verification), ("verification", "figures", "")))
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
     print()
-    if gone := left_sentence(flight.tracking):
-        print(f"{gone}\n")
     if why:
         print(f"{quality_told(flight_quality(flight.tracking), why)}\n")
     print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))

@@ -66,8 +66,8 @@ def run(chosen: argparse.Namespace) -> int:
         }
         print(json.dumps(facts | tracking_facts(flight.tracking) | {"quality": quality_facts(quality)}))
     else:
-        if gone:
-            print(f"{left_sentence(flight.tracking)}\n")
+        if told := left_sentence(flight.tracking):
+            print(f"{told}\n")
         print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
         print(f"\n{_error_told(bound, error)}\n{quality_told(quality, why)}\n{path}")
     return 0

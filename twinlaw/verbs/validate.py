@@ -53,11 +53,11 @@ def run(chosen: argparse.Namespace) -> int:
         flown = {"left": list(left(flight.tracking)), **tracking_facts(flight.tracking)}
         print(json.dumps(json.loads(text) | flown))
         return 0
+    if gone := left_sentence(flight.tracking):
+        print(f"{gone}\n")
     print(console.table(validation_rows(validation)))
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
-    if gone := left_sentence(flight.tracking):
-        print(f"\n{gone}")
     for note in validation.notes:
         print(f"\nnote: {note}")
     return 0

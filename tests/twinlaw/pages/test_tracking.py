@@ -3,9 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from records.log import LogColumns, RunLog
+from records.loops import Loop
 from sim.activity import activity
-from sim.tracking import Tracking
+from sim.tracking import Tracking, tracking
 from twinlaw.pages.run.tracking import left_sentence
 
 T_S = np.arange(100) * 0.01
@@ -27,3 +30,23 @@ def test_a_flight_that_overshoots_by_more_than_its_step_has_left_its_references(
     assert left_sentence([GOOD]) == ""
     told = left_sentence([GOOD, replace(GOOD, output="y_m", overshoot=1.96)])
     assert told.startswith("the flight left its references, y_m, which overshoots a step by 196 %")
+
+
+def test_a_red_flight_whose_input_stands_at_its_limit_names_it_and_asks_for_smaller_references() -> None:
+    """Truth: 3 s without a pause at 2 A of a current that may be -2 A to 2 A, and half a second more; x rests 0.04 m short."""
+    t_s = np.arange(600) * 0.01
+    loop = Loop("x", "x_m", "i_A", "motor")
+    i_A = np.where((t_s > 1.995) & (t_s < 5.005) | (t_s > 5.495), 2.0, 0.5)[:, None]
+    columns = LogColumns("slide", ("i_A",), ("x_m",), (), ("x",))
+    log = RunLog(
+        columns, 0.01, "closed", t_s, i_A, np.full((600, 1), 0.06), {"x_ref_m": np.where(t_s < 1.0, 0.06, 0.1)}
+    )
+    found = tracking(log, loop, (-2.0, 2.0))
+    assert found.at_limit_s == pytest.approx(3.0)
+    told = left_sentence([found])
+    assert told.startswith(
+        "i_A stands at its limit of 2 A for 3 s on end: the references of x_m lie beyond what it can do. Fly smaller ones"
+    )
+    assert "reference_max_m" in told
+    assert "stands" not in left_sentence([tracking(log, loop)])
+    assert left_sentence([replace(GOOD, at_limit_s=3.0)]) == ""

@@ -53,13 +53,26 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
 
 
 def left_sentence(tracking: Sequence[Tracking]) -> str:
-    """That a flight did not stay with its references, where it did not; else empty."""
-    gone = left(tracking)
+    """That a flight did not stay with its references, where it did not, or that they lie beyond what an input can do; else empty."""
+    gone, beyond = left(tracking), [_beyond(entry) for entry in tracking if entry.is_out_of_reach and _is_red(entry)]
+    told = f"the flight left its references, {' and '.join(gone)}" if gone else ""
+    holds_not = "this controller does not hold this plant"
+    if beyond:
+        return "\n".join((*beyond, *([f"{told}; where smaller ones do not help, {holds_not}"] if told else [])))
+    return f"{told}: {holds_not}" if told else ""
+
+
+def _beyond(entry: Tracking) -> str:
+    at = f"{entry.limit_V:.4g} {unit_of(entry.input)}".rstrip()
+    ends = " and ".join(f"reference_{end}_{unit_suffix(entry.output)}".rstrip("_") for end in ("min", "max"))
     return (
-        f"the flight left its references, {' and '.join(gone)}: this controller does not hold this plant"
-        if gone
-        else ""
+        f"{entry.input} stands at its limit of {at} for {entry.at_limit_s:.3g} s on end: the references of {entry.output} lie beyond "
+        f"what it can do. Fly smaller ones: narrow {ends} in [design]"
     )
+
+
+def _is_red(entry: Tracking) -> bool:
+    return any(look.colour is Colour.RED for look in tracking_looks(entry))
 
 
 def tracking_looks(entry: Tracking) -> tuple[Look, ...]:

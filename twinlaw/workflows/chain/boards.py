@@ -88,4 +88,4 @@ def fly_board(bound: BoundPlant, table: FlownTable, client: BoardClient) -> Chai
         controller = Wired(BoardController(client, lambda: tell(False, False)), wires)
         log = fly(bound, controller, whole, table_digest=table.digest, arithmetic=client.numbers.name)
     client.disarm()
-    return chain_flight(log, table.loops, client.counters())
+    return chain_flight(log, table, client.counters())

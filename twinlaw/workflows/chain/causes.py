@@ -18,8 +18,9 @@ AS_ITSELF = (
 
 
 def cause(bound: BoundPlant, table: FlownTable, arithmetic: str, flown: Sequence[Tracking]) -> str:
-    """One sentence on what the same flight in double precision, and with another arithmetic, comes to; "" of a green flight."""
-    if (colour := _colour(flown)) is Colour.GREEN:
+    """One sentence on what the same flight in double precision, and with another arithmetic, comes to; "" of a green flight, and
+    of one whose references lie beyond an input's reach."""
+    if (colour := _colour(flown)) is Colour.GREEN or any(entry.is_out_of_reach for entry in flown):
         return ""
     exact = fly_double(bound, table).tracking
     ends = f"At rest it is off by {_off(flown)}; in double precision the same law is {_colour(exact)}, off by {_off(exact)}"

@@ -1,6 +1,6 @@
 """Flights of the simulated plant under a table's law, in double precision or as generated."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +9,7 @@ from controllers import loading
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import DOUBLE, RunLog
-from records.loops import LOOPS, Loop
+from records.loops import LOOPS
 from records.quality import STEP_ERROR
 from records.table import ControllerTable
 from sim.bind import BoundPlant
@@ -45,7 +45,7 @@ def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
         else:
             law = Wired(loading.row_of(table).float_law(table), wires)
             log = fly(bound, law, whole, table_digest=table.digest, arithmetic=DOUBLE)
-    return chain_flight(log, table.loops)
+    return chain_flight(log, table)
 
 
 def flight_of(bound: BoundPlant, table: FlownTable) -> Manoeuvre:
@@ -82,7 +82,7 @@ def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlig
     law = Wired(HostLaw(loading.generate(table, arithmetic), arithmetic, loops=table.loops), wires)
     with stage(f"flying the generated law in {arithmetic}"):
         log = fly(bound, law, flight_of(bound, table), table_digest=table.digest, arithmetic=arithmetic)
-    return chain_flight(log, table.loops)
+    return chain_flight(log, table)
 
 
 def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
@@ -113,9 +113,12 @@ def _halved_in_double(bound: BoundPlant, table: FlownTable, whole: Manoeuvre, su
     return halved(lambda count: fly(bound, law, whole, substeps=count, resolution=exact).y, substeps)
 
 
-def chain_flight(log: RunLog, loops: Sequence[Loop], counters: Mapping[str, int] | None = None) -> ChainFlight:
-    """A flight and how well each loop followed its reference; an output without a loop has none in the log."""
-    own = {reference_name(loop.output) for loop in loops}
+def chain_flight(log: RunLog, table: FlownTable, counters: Mapping[str, int] | None = None) -> ChainFlight:
+    """A flight and how well each loop of its table followed its reference; an output without a loop has none in the log."""
+    own = {reference_name(loop.output) for loop in table.loops}
     others = {reference_name(output) for output in log.columns.outputs} - own
     kept = replace(log, extra={name: values for name, values in log.extra.items() if name not in others})
-    return ChainFlight(kept, tuple(tracking(kept, loop) for loop in loops), counters or {})
+    each = zip(table.loops, table.axes, strict=True)
+    return ChainFlight(
+        kept, tuple(tracking(kept, loop, (axis.u_min_V, axis.u_max_V)) for loop, axis in each), counters or {}
+    )
