@@ -13,7 +13,7 @@ from diagnosis.detect.instants import instants
 from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.waves import wave_starts
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import flat_slopes, likelihood, size_scale, stacked
+from diagnosis.fit.gauss_newton import flat_slopes, from_zero, likelihood, size_scale, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.library.coarse_grid import coarse_step
@@ -178,14 +178,15 @@ def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
 
 def _along(case: Case, linearisation: Linearisation, effect: Effect, way: Sequence[Values]) -> list[ScoreTest]:
     """The tries from the mildest on, down to one that loses: to first order the log likelihood is concave in a size, and beyond that all
-    lose more."""
-    found = list[ScoreTest]()
+    lose more. A limit that lies out of reach where it is nothing has no first order: one that cuts noise alone loses where one that holds
+    back a manoeuvre gains."""
+    found, is_concave = list[ScoreTest](), from_zero(effect.size)
     for values in way:
         entry = _tried(case, linearisation, effect, values)
         if entry is None:
             continue
         found.append(entry)
-        if entry.gain < -decisions.LEAST_GAIN:
+        if is_concave and entry.gain < -decisions.LEAST_GAIN:
             break
     return found
 
