@@ -226,7 +226,9 @@ CLOSE_PAIR_SHARE = Limit(
     DEVELOPMENT,
 )
 LEAST_GAIN = Limit(
-    4.0, "nats", "a score test below is not worth a fit; beyond a size that loses as much larger ones are not tried"
+    4.0,
+    "nats",
+    "a score test below is not worth a fit; beyond a size that loses as much larger ones are not tried, but for limits",
 )
 COSTLY_EFFECTS = Count(14, "effects", "worth a costly score test beside others", DEVELOPMENT)
 SETTLED_FITS = Count(

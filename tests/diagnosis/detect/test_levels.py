@@ -1,10 +1,15 @@
 """Sizes that are tried at full size: levels of a limit where the command is most of the time, others from the mildest on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
+from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.nominal import plain_fit
 from sim.added_effects import library
 from tests.diagnosis.arm import arm, arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
@@ -42,3 +47,18 @@ def test_of_a_play_that_is_not_there_the_mildest_alone_is_tried() -> None:
     (seen,) = score_effects(case, linearised(case, nominal_fit(case)), ["theta_sensor.backlash"])
     assert seen.gain < 0.0
     assert seen.values["width"] == min(library(arm())["theta_sensor.backlash"].size.starts)
+
+
+def test_a_limit_is_tried_beyond_one_that_cuts_noise_alone_and_loses() -> None:
+    # Truth: the driver ramps at 2 V/s, and a command that is logged with 0.05 V of noise is cut in vain by limits that are milder. One of
+    # 5.55 V/s loses, that of 2.59 V/s, the next of its starts, gains.
+    log = arm_log({"input.slew_limit": {"r": 2.0}}, seconds=6.0)
+    noisy = replace(log, u=log.u + 0.05 * np.random.default_rng(1).standard_normal(log.u.shape))
+    case = arm_case(noisy)
+    linearisation = linearised(case, plain_fit(case))
+    start = linearisation.fit.hypothesis
+    milder = likelihood_of(case, start.with_effects({"input.slew_limit": {"r": 5.55}}))
+    assert milder < linearisation.fit.log_likelihood - decisions.LEAST_GAIN
+    (found,) = score_effects(case, linearisation, ["input.slew_limit"])
+    assert found.values["r"] == pytest.approx(2.59)
+    assert found.gain > decisions.LEAST_GAIN
