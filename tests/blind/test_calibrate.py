@@ -3,13 +3,14 @@
 import json
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from blind import calibrate, family
-from blind.calibration.calibrate import DECAYS, quality
+from blind.calibration.calibrate import DECAYS, Calibration, quality
 from blind.calibration.examples import Example, Family
 from blind.calibration.fit import BELIEVED, UNLEARNED, fit, log_loss, partly
 from blind.calibration.withheld import withheld
@@ -46,11 +47,16 @@ def families(count: int) -> list[Family]:
     return [Family(name, (), count, tuple(example(rng) for _ in range(count))) for name in ("first", "second", "third")]
 
 
+@cache
+def learned() -> Calibration:
+    """What 900 answers teach."""
+    return calibrate(families(300))
+
+
 def test_a_known_law_is_found_again() -> None:
     """900 answers; each number within what so few tell of it, four standard errors from the spread of laws of thirds of them."""
-    told = families(300)
-    found = calibrate(told)
-    thirds = [fit(one.examples, found.decay) for one in told]
+    found = learned()
+    thirds = [fit(one.examples, found.decay) for one in found.families]
     for name, true in vars(TRUE).items():
         if not name.startswith("partly"):
             spread = np.std([getattr(law, name) for law in thirds], ddof=1) / np.sqrt(3.0)
@@ -59,7 +65,7 @@ def test_a_known_law_is_found_again() -> None:
 
 
 def test_probabilities_of_the_true_law_are_as_honest_out_of_family_as_chance_allows() -> None:
-    found = calibrate(families(200))
+    found = learned()
     assert found.outside.calibration_error < found.outside.honest_95
     assert found.outside.log_loss is not None
     told = [entry for one in found.families for entry in one.examples]
