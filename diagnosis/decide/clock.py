@@ -6,92 +6,95 @@ one axis throws the other, tells of that as far as it goes: a rig whose numbers 
 told and refuses nothing, as a number that the file takes for exact may be wrong as well.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.decide.columns import looked_at, settled_or_none, with_usual_forces
+from diagnosis.decide.columns import settled_or_none, with_usual_forces
 from diagnosis.decide.rows import most_by_an_effect
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.nominal import gain_over
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of
 from records.reasons import Note
 
-RATE_STEP = (
-    0.005  # of the rate, between which slopes are taken: five standard deviations of the best that a CE150 tells
-)
-RATE_FOUND = 0.0005  # of the rate: the search is at its end
-MOST_CLOCKS = 6  # that are tried: a bound on the time, which no data set
+RATE_FOUND = 0.001  # of the rate: a fifth of one standard deviation of the best that a CE150 tells, where the search is at its end
+MOST_CLOCKS = 6  # that are tried beside the first two: a bound on the time, which no data set
 
-
-@dataclass(frozen=True)
-class _Clock:
-    """A clock that counts `rate` seconds in one, with the plant's fit on it; which rate it promises, and what that gains in nats."""
-
-    rate: float
-    end: Fit
-    better: float
-    promised: float
+Clocks = Mapping[float, Fit]  # the plant's fit on each clock that was tried, by the seconds that it counts in one
 
 
 def clock_in_doubt(case: Case, nominal: Fit) -> tuple[Note, ...]:
     """That the logs' clock may run fast or slow, and by how much: read on another one the plant follows them more than CLOCK_TOLD better,
-    and no effect promises as much. `nominal` is the plant's fit to the logs as they are, or to a part."""
-    short = looked_at(case)
-    plain = settled_or_none(short, nominal.hypothesis)
-    if plain is None or not _is_promised(short, plain):
+    and no effect promises as much beside it. `nominal` is the plant's fit to the logs as they are, or to a part."""
+    plain = settled_or_none(case, nominal.hypothesis)
+    if plain is None:
         return ()
-    usual = with_usual_forces(short, plain)
-    *_, found = _search(short, usual)
-    gain = gain_over(short, usual, found.end) - _cost(found.rate)
-    off = abs(found.rate - 1.0)
-    if off > decisions.CLOCK_MOST or gain < decisions.CLOCK_TOLD or most_by_an_effect(short, usual) > gain:
+    usual = with_usual_forces(case, plain)
+    rate, end = _likeliest(case, usual)
+    off = abs(rate - 1.0)
+    gain = gain_over(case, usual, end) - _cost(rate)
+    if off > decisions.CLOCK_MOST or gain < decisions.CLOCK_TOLD:
+        return ()
+    if most_by_an_effect(on_clock(case, rate), end) > gain:
         return ()
     said = (
-        f"perhaps the log's clock runs {100.0 * off:.2g} % {'fast' if found.rate > 1.0 else 'slow'}: with its times divided by "
-        f"{found.rate:.4f} the plant follows {gain:.0f} nats better"
+        f"perhaps the log's clock runs {100.0 * off:.2g} % {'fast' if rate > 1.0 else 'slow'}: with its times divided by "
+        f"{rate:.4f} the plant follows {gain:.0f} nats better"
     )
-    return (Note("clock_doubted", "t_s", {"clock_rate": found.rate, "gain_nats": gain}, said),)
+    return (Note("clock_doubted", "t_s", {"clock_rate": rate, "gain_nats": gain}, said),)
 
 
-def _is_promised(case: Case, plain: Fit) -> bool:
-    """Whether slopes promise so much that a search is worth its time."""
-    return _slopes(case, plain, 1.0).promised > decisions.PROMISED_SHARE * decisions.CLOCK_TOLD
+def _likeliest(case: Case, usual: Fit) -> tuple[float, Fit]:
+    """The clock on which the plant follows the logs best, and its fit there; that of the logs where two clocks beside promise no more.
 
-
-def _search(case: Case, usual: Fit) -> Iterator[_Clock]:
-    """Clocks, each of the rate that the one before promises, the first that of the logs."""
-    clock = _slopes(case, usual, 1.0)
-    yield clock
+    Each is fitted with its noise: a clock that is off looks like noise, beside which slopes promise nothing.
+    """
+    step = float(decisions.CLOCK_SD)
+    clocks = {1.0: usual}
+    for rate in (1.0 - step, 1.0 + step):
+        _try(case, clocks, rate)
     for _ in range(MOST_CLOCKS):
-        end = settled_or_none(on_clock(case, clock.better), clock.end.hypothesis)
-        if end is None or abs(clock.better - clock.rate) < RATE_FOUND:
-            return
-        clock = _slopes(case, end, clock.better)
-        yield clock
+        rate, height = _top(clocks, step)
+        if height - _worth(clocks, 1.0) < decisions.PROMISED_SHARE * decisions.CLOCK_TOLD:
+            return 1.0, usual
+        near = abs(rate - _best(clocks)) < RATE_FOUND
+        if near or abs(rate - 1.0) > decisions.CLOCK_MOST + step or not _try(case, clocks, rate):
+            break
+    best = _best(clocks)
+    return best, clocks[best]
 
 
-def _slopes(case: Case, end: Fit, rate: float) -> _Clock:
-    """What two clocks beside promise, to first order in all that the plant's fit may then move."""
-    here = end.log_posterior + end.promised - _cost(rate)
-    up, down = (_promised(case, end, rate + by) for by in (RATE_STEP, -RATE_STEP))
-    slope, bend = (up - down) / (2.0 * RATE_STEP), (2.0 * here - up - down) / RATE_STEP**2
-    if not np.isfinite(bend) or bend <= 0.0:
-        return _Clock(rate, end, rate, 0.0)
-    return _Clock(
-        rate,
-        end,
-        rate + float(np.clip(slope / bend, -decisions.CLOCK_MOST, decisions.CLOCK_MOST)),
-        slope**2 / (2.0 * bend),
-    )
+def _try(case: Case, clocks: dict[float, Fit], rate: float) -> bool:
+    """Whether the plant can be fitted on a clock; it begins from the fit on the nearest one."""
+    nearest = min(clocks, key=lambda other: abs(other - rate))
+    found = settled_or_none(on_clock(case, rate), clocks[nearest].hypothesis)
+    if found is not None:
+        clocks[rate] = found
+    return found is not None
 
 
-def _promised(case: Case, end: Fit, rate: float) -> float:
-    at = fit(on_clock(case, rate), end.hypothesis, rounds=0)
-    return -np.inf if at is None else at.log_posterior + at.promised - _cost(rate)
+def _worth(clocks: Clocks, rate: float) -> float:
+    return clocks[rate].log_posterior - _cost(rate)
+
+
+def _best(clocks: Clocks) -> float:
+    return max(clocks, key=lambda rate: _worth(clocks, rate))
+
+
+def _top(clocks: Clocks, step: float) -> tuple[float, float]:
+    """Where the parabola through the best clock and its neighbours is highest, and how high; a step beyond the last one that was tried
+    where that is the best."""
+    best = _best(clocks)
+    left = max((rate for rate in clocks if rate < best), default=None)
+    right = min((rate for rate in clocks if rate > best), default=None)
+    if left is None or right is None:
+        return best + (step if right is None else -step), _worth(clocks, best)
+    rates = (left, best, right)
+    bend, slope, here = np.polyfit(np.array(rates) - best, [_worth(clocks, rate) for rate in rates], 2)
+    return (best, here) if bend >= 0.0 else (best - 0.5 * slope / bend, here - 0.25 * slope**2 / bend)
 
 
 def _cost(rate: float) -> float:

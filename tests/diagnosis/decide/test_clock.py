@@ -27,7 +27,9 @@ def told(library: EffectLibrary, log: RunLog) -> tuple[Note, ...]:
     return clock_in_doubt(case, plain_fit(case))
 
 
-@pytest.mark.parametrize(("rate", "way"), [(1.05, "fast"), *([(0.95, "slow"), (1.02, "fast")] if SOAK else [])])
+@pytest.mark.parametrize(
+    ("rate", "way"), [(0.9, "slow"), *([(1.05, "fast"), (1.02, "fast"), (1.1, "fast")] if SOAK else [])]
+)
 def test_a_clock_that_runs_fast_or_slow_is_told_with_its_size(
     stateless: EffectLibrary, fly: Fly, rate: float, way: str
 ) -> None:
@@ -52,7 +54,7 @@ def test_an_arm_that_rubs_or_of_which_rates_are_hardly_known_has_no_other_clock(
     assert told(effect_library(known_little), counted(arm_log(seed=32), 1.05)) == ()
 
 
-def test_a_clock_that_is_more_than_a_tenth_off_is_none(stateless: EffectLibrary, fly: Fly) -> None:
+def test_a_clock_that_is_a_quarter_off_is_none(stateless: EffectLibrary, fly: Fly) -> None:
     assert told(stateless, counted(fly(31, seconds=SECONDS), 1.25)) == ()
 
 

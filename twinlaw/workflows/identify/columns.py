@@ -66,7 +66,7 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
     )
     nominal = plain_fit(whole)
     told = demand_wiring(whole, nominal, plain_fit, where, list(logs), busiest)
-    return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)), *clock_in_doubt(busiest, nominal))
+    return (*told, *demand_rows(busiest, nominal, where, (LATE, EARLY)), *clock_in_doubt(whole, nominal))
 
 
 def where_most_moves(log: RunLog) -> RunLog:
