@@ -29,6 +29,7 @@ from recordings.formats.text.monitor import OF_NAMED, as_table
 from recordings.formats.text.others import demand_table
 from recordings.formats.text.splitting import SEPARATORS, split
 from recordings.formats.text.thousands import ungrouped
+from recordings.formats.text.totals import without_totals
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal, counted
 from records.errors import BadInput
@@ -76,9 +77,10 @@ def of_text(text: str, asked: TextLayout, where: str) -> Contents:
     )  # their separator and heading: none are in such a file
     told = (*monitored, *layout.found[of_cells:], *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
+    signals, totals = without_totals(signals)
     singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
     signals, turned = _oldest_first(with_clocks(with_clocks_in_front(signals)))
-    return Contents(signals, found=(*told, *turned), unread=unread, singles=singles)
+    return Contents(signals, found=(*told, *totals, *turned), unread=unread, singles=singles)
 
 
 def _oldest_first(signals: Mapping[str, Signal]) -> tuple[dict[str, Signal], tuple[str, ...]]:

@@ -62,6 +62,8 @@ LAYOUTS = {
     "a logger without power": (_rows(",", [NAMES, *TEXTS]).encode() + bytes(70), "comma"),
     "units in the cells": (_rows(";", [NAMES, *([row[0], f"{row[1]} V", f"{row[2]}m"] for row in TEXTS)]).encode(), "semicolon"),
     "a summary below": (_rows(",", [NAMES, *TEXTS]).encode() + b"Max,1.75,0\nMin,1.2,-0.1\n", "from line 14 on: 'Max,1.75,0'"),
+    "sums below": (_rows(",", [NAMES, *TEXTS, [f"{total:.4f}" for total in NUMBERS.sum(axis=0)]]).encode(), "the sums of"),
+    "means below": (_rows(",", [NAMES, *TEXTS, [f"{mean:.4f}" for mean in NUMBERS.mean(axis=0)]]).encode(), "the means of"),
     "exponents of Fortran": (_rows(" ", [NAMES, *[[f"{float(c):.9E}".replace("E", "D") for c in r] for r in TEXTS]]).encode(), ""),
 }  # fmt: skip
 
