@@ -91,7 +91,7 @@ def _margins(report: DesignReport) -> Section:
         panel("largest sensitivity Ms [-]", "sensitivity", 1.0),
         panel("phase margin [deg]", "phase_rad", 180.0 / math.pi),
         panel("delay margin [ms]", "delay_s", 1e3),
-        Panel(f"slowest pole{'' if alone else ', coupled'} [rad/s]", (coupled,)),
+        Panel("slowest pole [rad/s]", (coupled,)),
     )
     return Section(
         f"Margins over {scheduled_over(report)}",
