@@ -159,6 +159,7 @@ def test_coupled_loops_are_slowed_down_until_they_hold_together() -> None:
         )
 
 
+@pytest.mark.soak
 def test_where_no_common_speed_holds_both_the_loops_speeds_are_taken_apart() -> None:
     # Truth: below the horizontal the elevation's input turns ce150_velagic's azimuth, which presses the arm down; alike, even at an eighth
     # of their speeds, both loops have a pole at +0.04 rad/s. At 8 instead of 2 times the elevation's speed the azimuth holds it.
@@ -219,6 +220,7 @@ reference_max_K = 50.0
 """
 
 
+@pytest.mark.soak
 def test_a_slow_zero_keeps_the_filter_of_the_reference_and_no_step_overshoots(tmp_path: Path) -> None:
     # Truth: the wall's zero at -(H + G)/W = -0.026 rad/s is slower than the loop; without the filter steps overshoot by a fifth.
     path = ROOM.write(tmp_path, "room")

@@ -54,6 +54,7 @@ class Held:
         return (12.0 * (reference_rad - theta_rad) - 1.0 * speed_rad_s,)
 
 
+@pytest.mark.soak
 def test_an_arm_that_stands_on_its_hinge_tells_no_more_than_its_numbers_hold(tmp_path):
     """Truth by hand: of J, K, b and G only the ratios move the arm, so they are not told alone; with K known the others are, within 4 sd.
 

@@ -70,6 +70,7 @@ def other(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.soak
 def test_another_plant_s_controllers_fly_its_own_steps(other: Path) -> None:
     content = json.loads((other / "compare.json").read_text())
     assert [row["name"] for row in content["controllers"]] == ["scheduled", "lqg"]

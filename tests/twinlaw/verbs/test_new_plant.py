@@ -197,6 +197,7 @@ def test_a_schedule_is_put_in_as_the_file_says(like: str, tmp_path: Path) -> Non
     assert table.schedule is not None
 
 
+@pytest.mark.soak
 def test_another_axis_input_and_output_are_added_where_the_equations_say(tmp_path: Path) -> None:
     """Truth: a cart beside the arm takes these lines and no others; either is designed for, and the library knows both."""
     plant = begun("arm", tmp_path)

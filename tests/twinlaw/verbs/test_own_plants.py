@@ -162,6 +162,7 @@ def test_a_helicopter_s_equations_elsewhere_are_designed_for(tmp_path: Path) -> 
     assert mine["origin"]["plant_digest"] != own["origin"]["plant_digest"]
 
 
+@pytest.mark.soak
 def test_a_third_of_a_second_of_a_fast_motor_names_its_dry_friction(tmp_path: Path) -> None:
     """Truth: 0.05 N m of Coulomb friction; a step of 6 rad/s shows in ten of the 300 rows."""
     assert main(["new-plant", "motor", "--like", "motor", "--out", str(tmp_path)]) == 0
