@@ -11,7 +11,7 @@ from diagnosis.decisions import held_against
 from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.search.free_curve import FittedCurve
 from diagnosis.validate.fitted_logs import FittedLogs
 from diagnosis.validate.judged_logs import JudgedLogs
@@ -52,9 +52,10 @@ def curve_that_predicts(logs: JudgedLogs, curve: FittedCurve | None, plain: Hypo
 
 
 def curve_with_held_out(curve: FittedCurve | None, holdout: Holdout) -> FittedCurve | None:
-    """The curve, where there is one, with what it predicts of the hold-out beside what it does of the logs to explain."""
-    if curve is None:
-        return None
+    """The curve, where there is one, with what it predicts of the hold-out beside what it does of the logs to explain; of a hold-out that
+    the plant cannot follow it predicts nothing."""
+    if curve is None or passes(holdout.case, holdout.base.fit.hypothesis) is None:
+        return curve
     with_curve = curve.along(linearised(holdout.case, holdout.base.fit))
     nats = curve_foreseen(holdout.logs, with_curve, curve, holdout.base.fit.hypothesis)
     return replace(curve, ahead_nats=curve.ahead_nats + nats)

@@ -128,6 +128,10 @@ def test_what_a_curve_predicts_of_a_hold_out_counts_like_what_it_predicts_of_the
     assert both is not None
     assert both.ahead_nats == pytest.approx(2.0 * own, rel=1e-9)
     assert curve_with_held_out(None, holdout) is None
+    # A plant that leaves all bounds along the hold-out tells nothing of the curve there.
+    astray = replace(plain.fit, hypothesis=replace(hypothesis, theta=hypothesis.theta + 1e9))
+    lost = replace(holdout, base=FittedHypothesis((), astray, plain.evidence))
+    assert curve_with_held_out(there, lost) is there
 
 
 def test_a_curve_that_predicts_worse_than_the_plant_alone_is_none(
