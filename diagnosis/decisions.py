@@ -84,7 +84,7 @@ START_SHARE = Limit(
     "share of what a state does",
     "so far from where its first readings say it may start: an angle of the range that its readings show, a speed of the largest, what "
     "nobody reads of its rest under the first inputs",
-    "24 logs of sealed cases: by former 0.1 rad and 1 rad/s the plant follows them within 0.4 nats alike",
+    "24 logs of sealed cases: by 0.1 rad and 1 rad/s instead the plant follows them within 0.4 nats alike",
 )
 REST_SHARES = Limits(
     (0.0, 0.5),

@@ -1,6 +1,6 @@
 """A last row of sums or means, as a spreadsheet puts one below its columns."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -10,14 +10,32 @@ from recordings.signals import Signal
 
 Array = NDArray[np.float64]
 LEAST_ROWS = 8  # above: of fewer a clock that counts on, 0 1 2 3, may be the sum of what stands above
-TOTALS: Mapping[str, Callable[[Array], float]] = {"sums": np.sum, "means": np.mean}
-PRINTED = 1e-2  # of the mean size: totals are printed with fewer digits than they have; a clock that goes on is no total of its past
+PRINTED = 1e-2  # of the size of a total: they are printed with fewer digits than they have
+
+
+def _summed(x: Array) -> tuple[float, float]:
+    return float(np.sum(x)), float(np.sum(np.abs(x)))
+
+
+def _averaged(x: Array) -> tuple[float, float]:
+    """By how far a column moves: of a clock that counts from 1970 every row is the mean of all but for a millionth."""
+    return float(np.mean(x)), float(np.ptp(x))
+
+
+# A total of a column (rows,), and its size, by which what was printed is told from it.
+TOTALS: Mapping[str, Callable[[Array], tuple[float, float]]] = {"sums": _summed, "means": _averaged}
 
 
 def without_totals(signals: Mapping[str, Signal]) -> tuple[dict[str, Signal], tuple[str, ...]]:
-    """The signals of one table without a last row that is the sum of all above in every column, or the mean; and what is said of it."""
-    columns = [signal.values for signal in signals.values() if signal.values.ndim == 1 and np.any(signal.values)]
-    kind = next((kind for kind in TOTALS if _all_are(columns, kind)), None)
+    """The signals of one table without a last row that is the sum of all above in every column that moves, or the mean; and what is said
+    of it."""
+    columns = [
+        signal.values for signal in signals.values() if signal.values.ndim == 1 and len(signal.values) > LEAST_ROWS
+    ]
+    moving = [column for column in columns if np.ptp(column[:-1]) != 0.0]
+    kind = next(
+        (kind for kind in TOTALS if len(moving) > 1 and all(_is_total(column, kind) for column in moving)), None
+    )
     if kind is None:
         return dict(signals), ()
     return {name: _shorter(signal) for name, signal in signals.items()}, (
@@ -25,14 +43,10 @@ def without_totals(signals: Mapping[str, Signal]) -> tuple[dict[str, Signal], tu
     )
 
 
-def _all_are(columns: Sequence[Array], kind: str) -> bool:
-    """Whether the last of each of two columns and more is such a total of what stands above."""
-    if len(columns) < 2 or len(columns[0]) <= LEAST_ROWS:
-        return False
-    return all(
-        abs(column[-1] - TOTALS[kind](column[:-1])) <= PRINTED * float(TOTALS[kind](np.abs(column[:-1])))
-        for column in columns
-    )
+def _is_total(column: Array, kind: str) -> bool:
+    """Whether the last of a column is such a total of what stands above."""
+    total, size = TOTALS[kind](column[:-1])
+    return bool(abs(column[-1] - total) <= PRINTED * size)
 
 
 def _shorter(signal: Signal) -> Signal:

@@ -68,6 +68,13 @@ LAYOUTS = {
 }  # fmt: skip
 
 
+def test_the_last_row_of_a_rig_at_rest_by_a_clock_since_1970_is_no_row_of_means(tmp_path: Path) -> None:
+    # Truth: 20 rows, of which each is within a hundredth of the mean of all.
+    rows = [f"{1767225600.0 + 0.01 * row:.2f},5.0,{0.5 + 1e-4 * (row % 2):.4f}" for row in range(20)]
+    (tmp_path / "log.csv").write_text("\n".join(["t_s,u_V,q_m", *rows]) + "\n", encoding="utf-8")
+    assert len(read(tmp_path / "log.csv", TextLayout()).signals["q_m"].values) == 20
+
+
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_every_layout_gives_the_same_numbers_and_is_told(name: str, tmp_path: Path) -> None:
     content, told = LAYOUTS[name]
