@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from records.reasons import Note
-from records.text.units import unit_of
+from records.text.units import plain_unit, unit_of
 
 
 def sentences(notes: Sequence[Note]) -> tuple[str, ...]:
@@ -27,7 +27,7 @@ def plain_sentence(note: Note) -> str:
 def _presliding_friction(note: Note) -> str:
     told = note.numbers
     how = told["story"][0].lower() + told["story"][1:-1]
-    return f"{note.subject}, no gap: {how} ({told['symbol']} {told['value']:.2g} {told['unit']})"
+    return f"{note.subject}, no gap: {how} ({_size(told, 2)})"
 
 
 def _moved_parameter(note: Note) -> str:
@@ -72,9 +72,8 @@ def unseen_effects(note: Note, named: Callable[[str], str] = str) -> str:
     return "; ".join(parts)
 
 
-def _size(size: Mapping[str, Any]) -> str:
-    unit = "" if size["unit"] == "-" else f" {size['unit']}"
-    return f"{size['symbol']} = {size['value']:.3g}{unit}"
+def _size(size: Mapping[str, Any], digits: int = 3) -> str:
+    return f"{size['symbol']} = {size['value']:.{digits}g} {plain_unit(size['unit'])}".rstrip()
 
 
 def _unfollowed(note: Note) -> str:
@@ -140,7 +139,7 @@ def _something_else_missing(note: Note) -> str:
 def _own_events(note: Note) -> str:
     symbol = note.numbers["symbol"]
     told = (
-        f"{log} at {own['instant_s']:.4g} s with {symbol} = {own['size']:.3g} {own['unit']}"
+        f"{log} at {own['instant_s']:.4g} s with {symbol} = {own['size']:.3g} {plain_unit(own['unit'])}".rstrip()
         for log, own in note.numbers["logs"].items()
     )
     return f"{note.subject} happens at another instant in each log: {'; '.join(told)}"

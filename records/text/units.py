@@ -30,6 +30,7 @@ _SYMBOLS: Mapping[str, Dimension] = {
 # A longer one before its own ending: K_s is a rate of K, no time.
 _PLAIN = ("rad", "Nm", "m3", "kg", "Pa", "m", "V", "A", "N", "K", "W")
 _SUFFIXES = (*(f"{unit}{over}" for over in ("_s2", "_s", "") for unit in _PLAIN), "s")
+_SAID = {"-": "", "1": "", "rad rad^-1": "per rad", "m m^-1": "per m"}
 _FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+(?:\.5)?))?$")
 
 
@@ -77,6 +78,11 @@ def unit_of(name: str) -> str:
 def units_of(names: Iterable[str]) -> str:
     """The units of several columns, each once, as a person writes them: V, or W and N m; 1 where one states none."""
     return " and ".join(dict.fromkeys(unit_of(name) or "1" for name in names))
+
+
+def plain_unit(unit: str) -> str:
+    """A unit as one says it behind a number: nothing where that has none, "s^-1" of a rate "1 s^-1" of such a number."""
+    return _SAID.get(unit, unit.removeprefix("1 "))
 
 
 def said(name: str, value: float) -> str:

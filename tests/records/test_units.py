@@ -2,7 +2,7 @@
 
 import pytest
 
-from records.text.units import coherent, digits, dimension
+from records.text.units import coherent, digits, dimension, plain_unit
 
 
 @pytest.mark.parametrize(
@@ -20,3 +20,11 @@ def test_a_table_s_number_has_two_decimals_and_three_digits_at_least(value: floa
 )
 def test_a_column_s_ending_is_a_unit(suffix: str, unit: str) -> None:
     assert dimension(coherent(suffix)) == dimension(unit)
+
+
+@pytest.mark.parametrize(
+    ("unit", "said"), [("1", ""), ("-", ""), ("1 s^-1", "s^-1"), ("N m", "N m"), ("rad rad^-1", "per rad")]
+)
+def test_a_number_without_a_unit_is_said_without_one(unit: str, said: str) -> None:
+    """Truth: the offset of a valve's opening is 0.02, and its rate 0.15 s^-1."""
+    assert plain_unit(unit) == said

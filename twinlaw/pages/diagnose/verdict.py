@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from records.diagnosis import Diagnosis, Hypothesis
 from records.reasons import Note
 from records.text.uncertain import to_sd
+from records.text.units import plain_unit
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
-from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, listed, percent, plain_unit, words
+from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, listed, percent, words
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
 LEAST_TOLD = 0.01  # share of the error below which its going is not told

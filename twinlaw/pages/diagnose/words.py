@@ -11,7 +11,7 @@ from records.quality import MISFIT
 from records.reasons import DOUBTS, Note
 from records.text.functional_class import Dependence, parse_class
 from records.text.uncertain import with_sd
-from records.text.units import label, unit_of
+from records.text.units import label, plain_unit, unit_of
 from sim.added_effects import every_effect
 
 # By the unit at the end of a name: how a person reads it, where not in that unit.
@@ -21,7 +21,6 @@ _SHOWN = {
     "_m": ("mm", 1e3),
     "_m_s": ("mm/s", 1e3),
 }
-_UNITS = {"-": "", "1": "", "rad rad^-1": "per rad", "m m^-1": "per m"}
 # By the word before the brackets of a class: what of the rig changes.
 _CLASSES = {
     "torque": "a torque",
@@ -96,11 +95,6 @@ def plain_notes(notes: Sequence[Note]) -> list[str]:
 def doubts_in_words(notes: Sequence[Note]) -> str:
     """What is to be read before the verdict: columns that may be others than they are called."""
     return "; ".join(plain_sentence(note) for note in notes if note.kind in DOUBTS)
-
-
-def plain_unit(unit: str) -> str:
-    """A unit as one says it: none where a number has none."""
-    return _UNITS.get(unit, unit)
 
 
 def class_in_words(text: str) -> str:
