@@ -79,7 +79,8 @@ def _kinds(model: Model, equations: Equations) -> Iterator[Slip]:
             yield Slip(("input_limits",), f"limits of {variable}", shown(pair), expected)
     for what, words, expression in _expressions(model):
         if not _is_expression(expression):
-            yield Slip(words, what, shown(expression), "one number or SymPy expression")
+            zero = ", 0 where the axis has no dry friction" if words[0] == "coulomb" else ""
+            yield Slip(words, what, shown(expression), f"one number or SymPy expression{zero}")
 
 
 def _is_expression(value: Any) -> bool:

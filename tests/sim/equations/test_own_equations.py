@@ -49,6 +49,7 @@ SLIPS = {
     "one symbol instead of a tuple": ("inputs=(u,)", "inputs=(u)", "inputs=(A,)"),
     "a list instead of a tuple": ("states=(theta, omega)", "states=[theta, omega]", "a tuple"),
     "a matrix where a number belongs": ("rates={theta: omega}", "rates={theta: sympy.eye(2)}", "one number or SymPy"),
+    "dry friction of None": ("torque, 0, None", "torque, None, None", "0 where the axis has no dry friction"),
     "a symbol that nothing declares": ("rates={theta: omega}", 'rates={theta: symbol("w")}', "the unknown name w"),
     "a symbol that is not real": ('symbol("u_V")', 'sympy.Symbol("u_V")', 'write symbol("u_V")'),
     "a state without a rate": ("rates={theta: omega}", "rates={}", "nothing for theta_rad"),
