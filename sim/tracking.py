@@ -16,6 +16,9 @@ from sim.columns import reference_name
 Array = NDArray[np.float64]
 
 STEADY_S = 1.0  # the error at rest is the mean over this long before the next change of any reference
+OUT_OF_REACH_S = (
+    STEADY_S  # an input at a limit for as long as errors at rest are asked for: no law could have done more
+)
 SHORTEST_HOLD_S = 3.0  # a reference held for less has no steady part to judge
 # A step has settled where the angle stays so near; seed 001 calls errors of 0.5 to 1 deg good.
 SETTLED_RAD = math.radians(1.0)
@@ -51,8 +54,8 @@ class Tracking:
 
     @property
     def is_out_of_reach(self) -> bool:
-        """Whether its input stood at a limit for so long that no law could have done more: as long as errors at rest are asked for."""
-        return self.at_limit_s >= STEADY_S
+        """Whether its input stood at a limit for so long that no law could have done more."""
+        return self.at_limit_s >= OUT_OF_REACH_S
 
     @property
     def is_angle(self) -> bool:
@@ -113,7 +116,7 @@ def tracking(log: RunLog, loop: Loop, limits_V: tuple[float, float] = (-np.inf, 
     error = reference - measured
     step = max((abs(hold.change) for hold in steps), default=0.0)
     band = SETTLED_RAD if unit_suffix(output) == "rad" else SETTLED_SHARE * step
-    at_limit_s, limit_V = _longest_at_limit(log.t_s, log.column(own_input), limits_V)
+    at_limit_s, limit_V = longest_at_limit(log.t_s, log.column(own_input), limits_V)
     settling = [settling_s(log.t_s[hold.begin : hold.end], error[hold.begin : hold.end], band) for hold in steps]
     return Tracking(
         output=output,
@@ -131,7 +134,7 @@ def tracking(log: RunLog, loop: Loop, limits_V: tuple[float, float] = (-np.inf, 
     )
 
 
-def _longest_at_limit(t_s: Array, u_V: Array, limits_V: tuple[float, float]) -> tuple[float, float]:
+def longest_at_limit(t_s: Array, u_V: Array, limits_V: tuple[float, float]) -> tuple[float, float]:
     """The longest time without a pause at one of its limits, and which; 0 of an input without limits."""
     low, high = limits_V
     if not np.isfinite(high - low):

@@ -24,6 +24,7 @@ from twinlaw.pages.compare import tables
 from twinlaw.pages.compare.comparison import Compared, Wanted, facts
 from twinlaw.pages.compare.plots import figure_plot, open_loop_plot
 from twinlaw.pages.compare.quality import controller_quality
+from twinlaw.pages.compare.reach import reach_sentences
 from twinlaw.pages.compare.report import OPEN_LOOP_CAPTION, Told, Where, page_text, verdict
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.verifying import STEPS
@@ -70,12 +71,16 @@ def run(chosen: argparse.Namespace) -> int:
     rows = compare_controllers(bound, designed, wanted, chosen.out, each)
     eq26 = eq26_errors(bound, designed)
     colours = {row.row.name: quality_facts(controller_quality(row)) for row in rows}
-    content = facts(bound, rows, wanted, eq26) | {"refused": refused, "unsettled": unsettled, "quality": colours}
+    beyond = reach_sentences(rows, spread_figure(bound), is_papers=not missing(bound))
+    told = {"refused": refused, "unsettled": unsettled, "beyond_reach": beyond, "quality": colours}
+    content = facts(bound, rows, wanted, eq26) | told
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
-    page = _write_page(chosen, bound, rows, Told(wanted, eq26, refused, unsettled))
+    page = _write_page(chosen, bound, rows, Told(wanted, eq26, refused, unsettled, beyond))
     if chosen.json:
         print(json.dumps(content))
     else:
+        if beyond:
+            print("\n".join(beyond), end="\n\n")
         print(console.table(tables.cost_rows(rows), tables.cost_heading(rows)))
         for loop in rows[0].loops:
             print(f"\n{loop.axis}, {wanted.trial.runs} plants within +-10 %")

@@ -91,8 +91,9 @@ def build_controller(bound: BoundPlant, name: str, table: Any, wanted: Wanted, f
     with stage(f"{name}: flying the manoeuvres"):
         flights = fly_figures(bound, flown_law(bound, texts), table.sample_period_s)
     figures = {figure: flown.merits() for figure, flown in flights.items()}
+    limits_V = tuple((axis.u_min_V, axis.u_max_V) for axis in table.axes)
     law = Law(texts, {share: _filtered(bound, row, table, share) for share in FILTERS})
-    return Built(row, table.loops, law, table.digest, equality, mismatches, cost, flights, figures)
+    return Built(row, table.loops, limits_V, law, table.digest, equality, mismatches, cost, flights, figures)
 
 
 def tuned_text(bound: BoundPlant, name: str, seed: int) -> str:

@@ -38,10 +38,12 @@ class BoardCost:
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """One controller on the board: its loops and law, its table's digest, equality, cost; its flights through the figures, with merits."""
+    """One controller on the board: its loops, the limits of each one's input, and law, its table's digest, equality, cost; its flights
+    through the figures, with merits."""
 
     row: Controller
     loops: tuple[Loop, ...]
+    limits_V: tuple[tuple[float, float], ...]
     law: Law
     digest: str
     equality: tuple[Equality, ...]

@@ -22,12 +22,14 @@ OPEN_LOOP_CAPTION = (
 
 @dataclass(frozen=True, eq=False)
 class Told:
-    """What was compared, eq (26) in float32, and why controllers were not designed, or do not settle, by name."""
+    """What was compared, eq (26) in float32, why controllers were not designed, or do not settle, by name, and whose references lie
+    beyond an input's reach."""
 
     wanted: Wanted
     eq26: Mapping[tuple[str, str], FormError]
     refused: Mapping[str, str]
     unsettled: Mapping[str, str]
+    beyond: Sequence[str]
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,7 @@ def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
             axes_iae=" / ".join(f"{loop.axis} in {shown(loop.output)[0]} s" for loop in loops),
             refused=[f"`{name}`: {why}" for name, why in told.refused.items()],
             unsettled=[f"`{name}`: {why}" for name, why in told.unsettled.items()],
+            beyond=told.beyond,
             rows=[
                 {
                     **{name: getattr(row.row, name) for name in ("name", "title", "source", "plants")},
@@ -112,13 +115,14 @@ def verdict(rows: Sequence[Compared]) -> str:
     for loop in rows[0].loops:
         axis, unit = loop.axis, shown(loop.output)[0]
         spread = {row.row.name: spread_of(row.spread, axis) for row in rows}
-        held = {name: found for name, found in spread.items() if not found.unsettled} or spread
+        settled = {name: found for name, found in spread.items() if not found.unsettled}
+        held, none = settled or spread, "" if settled else ", where none does"
         iae = min(held, key=lambda name: held[name].median_iae_rad_s)
         swing = min(held, key=lambda name: held[name].worst_swing_V)
         overshoot = min(held, key=lambda name: held[name].worst_overshoot)
         parts.append(
-            f"{axis}: least IAE `{iae}` ({tables.integral(loop, held[iae].median_iae_rad_s)} {unit} s in the median), least overshoot "
-            f"`{overshoot}` ({100.0 * held[overshoot].worst_overshoot:.1f} % at worst), least swing `{swing}` "
+            f"{axis}{none}: least IAE `{iae}` ({tables.integral(loop, held[iae].median_iae_rad_s)} {unit} s in the median), least "
+            f"overshoot `{overshoot}` ({100.0 * held[overshoot].worst_overshoot:.1f} % at worst), least swing `{swing}` "
             f"({held[swing].worst_swing_V:.1f} {unit_of(loop.input)})"
         )
     cheapest = min(rows, key=lambda row: row.cost.cycles_max)

@@ -79,6 +79,7 @@ def _equal(row: Compared) -> str:
     return f"{sum(entry.mismatches for entry in row.equality)} of {steps} steps differ"
 
 
+_ROUNDING = 11  # decimals in SI units, beyond which a mean over seconds is rounding of its steps
 EQ26_FORMS = {"plain": "seven equations in powers of z^-1", "closed": "as on the board"}
 
 
@@ -118,7 +119,7 @@ def _merit(merit: Merit, loop: Loop) -> Row:
 def measured(loop: Loop, value: float) -> str:
     """An error as a person reads it: two decimals of a degree, three digits of anything else."""
     unit, scale = shown(loop.output)
-    return f"{scale * value:.2f} {unit}" if unit == "deg" else f"{value:.3g} {unit}"
+    return f"{scale * value:.2f} {unit}" if unit == "deg" else f"{round(value, _ROUNDING):.3g} {unit}"
 
 
 def integral(loop: Loop, value: float) -> str:

@@ -63,12 +63,20 @@ def left_sentence(tracking: Sequence[Tracking]) -> str:
 
 
 def _beyond(entry: Tracking) -> str:
-    at = f"{entry.limit_V:.4g} {unit_of(entry.input)}".rstrip()
-    ends = " and ".join(f"reference_{end}_{unit_suffix(entry.output)}".rstrip("_") for end in ("min", "max"))
-    return (
-        f"{entry.input} stands at its limit of {at} for {entry.at_limit_s:.3g} s on end: the references of {entry.output} lie beyond "
-        f"what it can do. Fly smaller ones: narrow {ends} in [design]"
-    )
+    told = beyond_reach(entry.output, entry.input, entry.at_limit_s, entry.limit_V)
+    return f"{told}. {smaller(entry.output)}"
+
+
+def beyond_reach(output: str, own_input: str, at_limit_s: float, limit_V: float) -> str:
+    """That an output's references lie beyond what its input can do, which stood at a limit for so long."""
+    at = f"{limit_V:.4g} {unit_of(own_input)}".rstrip()
+    return f"{own_input} stands at its limit of {at} for {at_limit_s:.3g} s on end: the references of {output} lie beyond what it can do"
+
+
+def smaller(output: str) -> str:
+    """What makes an output's references smaller."""
+    ends = " and ".join(f"reference_{end}_{unit_suffix(output)}".rstrip("_") for end in ("min", "max"))
+    return f"Fly smaller ones: narrow {ends} in [design]"
 
 
 def _is_red(entry: Tracking) -> bool:
