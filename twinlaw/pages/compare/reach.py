@@ -7,7 +7,7 @@ from records.quality import Colour
 from sim.tracking import OUT_OF_REACH_S, longest_at_limit
 from twinlaw.pages.compare.comparison import Compared
 from twinlaw.pages.compare.quality import axis_looks
-from twinlaw.pages.run.tracking import beyond_reach, smaller
+from twinlaw.pages.reach import beyond_reach, smaller
 
 
 def reach_sentences(rows: Sequence[Compared], figure: str, is_papers: bool) -> list[str]:

@@ -11,6 +11,7 @@ from sim.tracking import Tracking, left
 from twinlaw.pages.measured import settling_text, small
 from twinlaw.pages.page import Row
 from twinlaw.pages.quality import colour_of
+from twinlaw.pages.reach import beyond_reach, smaller
 
 TRACKING_HEADING: Row = (
     "tracking",
@@ -65,18 +66,6 @@ def left_sentence(tracking: Sequence[Tracking]) -> str:
 def _beyond(entry: Tracking) -> str:
     told = beyond_reach(entry.output, entry.input, entry.at_limit_s, entry.limit_V)
     return f"{told}. {smaller(entry.output)}"
-
-
-def beyond_reach(output: str, own_input: str, at_limit_s: float, limit_V: float) -> str:
-    """That an output's references lie beyond what its input can do, which stood at a limit for so long."""
-    at = f"{limit_V:.4g} {unit_of(own_input)}".rstrip()
-    return f"{own_input} stands at its limit of {at} for {at_limit_s:.3g} s on end: the references of {output} lie beyond what it can do"
-
-
-def smaller(output: str) -> str:
-    """What makes an output's references smaller."""
-    ends = " and ".join(f"reference_{end}_{unit_suffix(output)}".rstrip("_") for end in ("min", "max"))
-    return f"Fly smaller ones: narrow {ends} in [design]"
 
 
 def _is_red(entry: Tracking) -> bool:

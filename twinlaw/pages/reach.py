@@ -1,0 +1,15 @@
+"""What is said of references that lie beyond what an input can do."""
+
+from records.text.units import unit_of, unit_suffix
+
+
+def beyond_reach(output: str, own_input: str, at_limit_s: float, limit_V: float) -> str:
+    """That an output's references lie beyond what its input can do, which stood at a limit for so long."""
+    at = f"{limit_V:.4g} {unit_of(own_input)}".rstrip()
+    return f"{own_input} stands at its limit of {at} for {at_limit_s:.3g} s on end: the references of {output} lie beyond what it can do"
+
+
+def smaller(output: str) -> str:
+    """What makes an output's references smaller."""
+    ends = " and ".join(f"reference_{end}_{unit_suffix(output)}".rstrip("_") for end in ("min", "max"))
+    return f"Fly smaller ones: narrow {ends} in [design]"
