@@ -3,10 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
+from itertools import pairwise
 
 from sympy import Symbol, sympify
 
-from sim.model import Model
+from sim.model import Axis, Model
 from sim.places import Places
 
 WIDTH, HEIGHT = 128.0, 44.0  # of a block, px
@@ -36,6 +37,7 @@ def block_diagram(model: Model, shares: Mapping[str, float]) -> str:
     floor = max(block.y for block in blocks.values()) + HEIGHT
     edges = _edges(places)
     edges += _pushed(model, edges)
+    edges += _carried(model, edges)
     parts = [_arrow(blocks[a], blocks[b], main) for a, b, main in edges if b in blocks]
     if places.loop:
         loop = DiagramBlock(LOOP, (width - WIDTH) / 2, floor + ROW_GAP, shares.get(LOOP, 0.0))
@@ -95,6 +97,22 @@ def _pushed(model: Model, edges: Sequence[tuple[str, str, bool]]) -> list[tuple[
     return found
 
 
+def _carried(model: Model, edges: Sequence[tuple[str, str, bool]]) -> list[tuple[str, str, bool]]:
+    """Where nothing else pushes an axis: from the one drawn above or below it that its equations depend on, its place against that too."""
+    pushed, named = {end for _, end, _ in edges}, {axis.name: axis for axis in model.axes}
+    drawn = [named[name] for name in model.places.axes]
+    return [
+        (one.name, axis.name, True)
+        for one, axis in (*pairwise(drawn), *pairwise(reversed(drawn)))
+        if axis.name not in pushed and _needed(model, axis) & {one.position, one.velocity}
+    ]
+
+
+def _needed(model: Model, axis: Axis) -> set[Symbol]:
+    rate = model.rates.get(axis.position, 0) if axis.position is not None else 0
+    return set(sympify(axis.torque).free_symbols | sympify(rate).free_symbols)
+
+
 def _reached(model: Model, variable: Symbol) -> set[Symbol]:
     """The input, and every state off the axes that it moves."""
     reached = {variable}
@@ -122,6 +140,9 @@ def _box(block: DiagramBlock) -> str:
 
 def _arrow(a: DiagramBlock, b: DiagramBlock, main: bool) -> str:
     dash = "" if main else ' stroke-dasharray="4 3"'
+    if a.x == b.x:
+        begin, end = (a.y + HEIGHT, b.y - 2) if a.y < b.y else (a.y, b.y + HEIGHT + 2)
+        return _LINE.format(points=f"{a.x + WIDTH / 2:g},{begin:g} {a.x + WIDTH / 2:g},{end:g}", dash=dash)
     return _LINE.format(points=f"{a.x + WIDTH:g},{a.y + HEIGHT / 2:g} {b.x - 2:g},{b.y + HEIGHT / 2:g}", dash=dash)
 
 

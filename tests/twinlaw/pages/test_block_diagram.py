@@ -7,7 +7,7 @@ import pytest
 
 from records.plant import load_plant
 from sim.bind import bind
-from tests.own_plants import PLAIN, TWO_HEATERS
+from tests.own_plants import ELASTIC, PLAIN, TWO_HEATERS
 from tests.plants import bound
 from twinlaw.pages.block_diagram import HEIGHT, SIDE, WIDTH, block_diagram
 
@@ -49,3 +49,12 @@ def test_an_input_without_a_rotor_leads_to_what_its_equations_push(tmp_path: Pat
             begun = [line for line in points_of(drawn) if line[0] == (x + WIDTH, y + HEIGHT / 2)]
             reached = {(left + 2, middle - HEIGHT / 2) for ((_, _), (left, middle)) in begun}
             assert reached == {corner_of(drawn, end) for end in ends}
+
+
+def test_an_axis_that_no_input_pushes_is_led_to_from_the_axis_that_does(tmp_path: Path) -> None:
+    """Truth: the motor, above, turns the load through a spring; the load turns back on it, which the input's own arrow leaves out."""
+    drawn = block_diagram(bind(load_plant(ELASTIC.write(tmp_path / "drive", "drive"))).model, {})
+    (x, top), (_, y) = corner_of(drawn, "motor"), corner_of(drawn, "load")
+    assert [[(x + WIDTH / 2, top + HEIGHT), (x + WIDTH / 2, y - 2)]] == [
+        line for line in points_of(drawn) if line[0][0] == line[-1][0]
+    ]
