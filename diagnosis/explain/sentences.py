@@ -155,7 +155,8 @@ def _stated_predicts_better(note: Note) -> str:
 
 def _restless(note: Note) -> str:
     sd, unit, time_s = (note.numbers[name] for name in ("sd", "unit", "time_s"))
-    return f"noise of {note.subject}: a torque of {sd:.3g} {unit} (one sd) comes and goes within {time_s:.2g} s; none foretells it"
+    what = "force" if unit == "N" else "torque"
+    return f"noise of {note.subject}: a {what} of {sd:.3g} {unit} (one sd) comes and goes within {time_s:.2g} s; none foretells it"
 
 
 def _coloured_readings(note: Note) -> str:

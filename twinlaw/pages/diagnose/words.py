@@ -23,7 +23,7 @@ _SHOWN = {
 }
 # By the word before the brackets of a class: what of the rig changes.
 _CLASSES = {
-    "torque": "a torque",
+    "torque": "a torque or force",
     "thrust": "a thrust",
     "gain": "a factor",
     "output": "an error of the reading",
@@ -98,13 +98,13 @@ def doubts_in_words(notes: Sequence[Note]) -> str:
 
 
 def class_in_words(text: str) -> str:
-    """ "torque(psi, sgn psi_dot) on elevation" with "a torque that depends on psi and the direction in which psi moves" behind it."""
+    """ "torque(psi, sgn psi_dot) on elevation" with what `dependence_in_words` says behind it."""
     told = dependence_in_words(text)
     return f"{text}: {told}" if told else text
 
 
 def dependence_in_words(text: str) -> str:
-    """ "a torque that depends on psi and the direction in which psi moves"; empty for a class of no kind."""
+    """ "a torque or force that depends on psi and the direction in which psi moves"; empty for a class of no kind."""
     known = parse_class(text)
     if known.kind not in _CLASSES:
         return ""

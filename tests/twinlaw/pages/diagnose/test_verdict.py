@@ -40,7 +40,7 @@ STIFFER = Note(
         ({"found": (), "effects": (), "unknown": Unknown(0.97)}, "no effect of the library can be named"),
         (
             {"found": (), "effects": (), "unknown": Unknown(0.97, "azimuth", "torque(phi_dot) on azimuth")},
-            "does something in the azimuth that the plant file lacks, a torque that depends on how fast phi changes; no effect of",
+            "does something in the azimuth that the plant file lacks, a torque or force that depends on how fast phi changes; no effect of",
         ),
         (
             {"found": (), "effects": (), "unknown": Unknown(0.01), "note_records": (MOVED,)},

@@ -10,7 +10,7 @@ from twinlaw.pages.diagnose.words import class_in_words, plain_notes
 
 
 def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
-    assert class_in_words("torque(domega_M/dt)").endswith("a torque that depends on how fast omega_M changes")
+    assert class_in_words("torque(domega_M/dt)").endswith("a torque or force that depends on how fast omega_M changes")
     assert class_in_words("torque(psi, sgn psi_dot) on elevation").endswith(
         "depends on psi and the direction in which psi moves"
     )
