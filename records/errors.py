@@ -14,7 +14,9 @@ class BadInput(Exception):
     remedy: str
 
     def __str__(self) -> str:
-        return f"{self.where}: {self.what}: got {self.got}, expected {self.expected}; {self.remedy}"
+        # A quantity without a unit ends in the space before it.
+        got, expected = self.got.rstrip(), self.expected.rstrip()
+        return f"{self.where}: {self.what}: got {got}, expected {expected}; {self.remedy}"
 
 
 class VerificationFailed(Exception):

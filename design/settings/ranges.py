@@ -70,7 +70,7 @@ def within(stops_rad: tuple[float, float], share: float) -> tuple[float, float] 
 def check_range(where: str, low: float, high: float, stops_rad: tuple[float, float], what: str, loop: Loop) -> None:
     """Raise BadInput unless the range is one, and within the stops."""
     unit = unit_of(loop.output)
-    got = f"{low:g} .. {high:g} {unit}"
+    got = f"{low:g} .. {high:g} {unit}".rstrip()
     if low >= high:
         raise BadInput(what, where, f"{got}, which is empty", "min < max", "widen the range")
     if low < stops_rad[0] or high > stops_rad[1]:

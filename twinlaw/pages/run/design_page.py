@@ -140,7 +140,7 @@ def _constants(report: DesignReport) -> Section:
 
 
 def _small(loop: Loop, value: float) -> str:
-    return f"{1e3 * value:.2g} mV" if loop.input_unit == "V" else f"{value:.2g} {unit_of(loop.input)}"
+    return f"{1e3 * value:.2g} mV" if loop.input_unit == "V" else f"{value:.2g} {unit_of(loop.input)}".rstrip()
 
 
 def coefficient_plot(report: DesignReport) -> str:
