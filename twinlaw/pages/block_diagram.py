@@ -85,15 +85,15 @@ def _edges(places: Places) -> list[tuple[str, str, bool]]:
 
 
 def _pushed(model: Model, edges: Sequence[tuple[str, str, bool]]) -> list[tuple[str, str, bool]]:
-    """Where no part of a name is between: from an input to the axes that its equations push, or where nothing moves to the sensors."""
+    """Where no part of a name is between: from an input to the axes that its equations push, and to the sensors of what moves off them."""
     begun, found = {a for a, _, _ in edges}, []
     for name, place in model.places.inputs.items():
         if name not in begun:
             reached = _reached(model, place.variable)
             axes = [axis.name for axis in model.axes if sympify(axis.torque).free_symbols & reached]
             read = {str(output) for output, y in model.outputs.items() if sympify(y).free_symbols & reached}
-            ends = axes or [sensor for sensor, place in model.places.sensors.items() if place.output in read]
-            found += [(name, end, True) for end in ends]
+            sensors = [sensor for sensor, place in model.places.sensors.items() if place.output in read]
+            found += [(name, end, True) for end in (*axes, *sensors)]
     return found
 
 
@@ -143,7 +143,10 @@ def _arrow(a: DiagramBlock, b: DiagramBlock, main: bool) -> str:
     if a.x == b.x:
         begin, end = (a.y + HEIGHT, b.y - 2) if a.y < b.y else (a.y, b.y + HEIGHT + 2)
         return _LINE.format(points=f"{a.x + WIDTH / 2:g},{begin:g} {a.x + WIDTH / 2:g},{end:g}", dash=dash)
-    return _LINE.format(points=f"{a.x + WIDTH:g},{a.y + HEIGHT / 2:g} {b.x - 2:g},{b.y + HEIGHT / 2:g}", dash=dash)
+    way = f"{a.x + WIDTH:g},{a.y + HEIGHT / 2:g}"
+    if b.x - a.x > WIDTH + COLUMN_GAP and b.y != a.y:  # around what stands between
+        way = f"{a.x + WIDTH / 2:g},{a.y + HEIGHT * (b.y > a.y):g} {a.x + WIDTH / 2:g},{b.y + HEIGHT / 2:g}"
+    return _LINE.format(points=f"{way} {b.x - 2:g},{b.y + HEIGHT / 2:g}", dash=dash)
 
 
 def _way_back(sensors: Sequence[DiagramBlock], inputs: Sequence[DiagramBlock], loop: DiagramBlock) -> list[str]:

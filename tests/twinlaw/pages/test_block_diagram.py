@@ -1,13 +1,14 @@
 """The block diagram shows the whole way round: every sensor to the loop, and the loop to every input."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from records.plant import load_plant
 from sim.bind import bind
-from tests.own_plants import ELASTIC, PLAIN, TWO_HEATERS
+from tests.own_plants import ELASTIC, MAGNET, PLAIN, TWO_HEATERS
 from tests.plants import bound
 from twinlaw.pages.block_diagram import HEIGHT, SIDE, WIDTH, block_diagram
 
@@ -58,3 +59,16 @@ def test_an_axis_that_no_input_pushes_is_led_to_from_the_axis_that_does(tmp_path
     assert [[(x + WIDTH / 2, top + HEIGHT), (x + WIDTH / 2, y - 2)]] == [
         line for line in points_of(drawn) if line[0][0] == line[-1][0]
     ]
+
+
+def test_what_is_read_off_the_axes_is_led_to_around_them(tmp_path: Path) -> None:
+    """Truth: the coil's current, on its way from the voltage to the ball, is read as well."""
+    body = MAGNET.body.replace('{"gap_m": gap}', '{"gap_m": gap, "i_A": i}')
+    body = body.replace("sensors={", 'sensors={"ammeter": SensorPlace("i_A", "A", 1.0), ')
+    read = replace(MAGNET, sensors={**MAGNET.sensors, "i_A": 1e-3}, body=body)
+    drawn = block_diagram(bind(load_plant(read.write(tmp_path / "read", "read"))).model, {})
+    (x, y), (ball, top), (right, meter) = (corner_of(drawn, name) for name in ("coil", "ball", "ammeter"))
+    way = [(x + WIDTH / 2, y), (x + WIDTH / 2, meter + HEIGHT / 2), (right - 2, meter + HEIGHT / 2)]
+    assert way in points_of(drawn)
+    assert meter + HEIGHT / 2 < top
+    assert [(x + WIDTH, y + HEIGHT / 2), (ball - 2, top + HEIGHT / 2)] in points_of(drawn)
