@@ -35,7 +35,7 @@ def notes_on(estimates: Sequence[Estimated], fit: FrequencyFit, pairs: Sequence[
             by_data = f"{entry.name} (by the data {with_sd(entry.by_data, entry.by_data_sd)} {entry.unit})"
             reasons.setdefault(_reason(fit, entry.name), []).append(by_data)
     untold = [
-        f"{', '.join(names)}: not told; {reason}; the plant file's value is kept" for reason, names in reasons.items()
+        f"not told: {', '.join(names)}; {reason}; the plant file's value is kept" for reason, names in reasons.items()
     ]
     silent = [
         f"{pair.input} to {pair.output}: not matched, as its coherence is nowhere {thresholds.GOOD_COHERENCE:g} over four frequencies "

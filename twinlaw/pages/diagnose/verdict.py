@@ -10,6 +10,7 @@ from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
 from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, listed, percent, words
+from twinlaw.pages.page import as_sentence
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
 LEAST_TOLD = 0.01  # share of the error below which its going is not told
@@ -22,7 +23,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     """What was found for a reader who knows nothing but the rig: first what makes it doubtful and what the firmware did otherwise, then one
     sentence on the plant."""
     doubts = doubts_in_words(diagnosis.note_records)
-    first = f"{doubts[0].upper()}{doubts[1:]}." if doubts else ""
+    first = as_sentence(doubts) if doubts else ""
     return " ".join(filter(None, (first, firmware_first(diagnosis.firmware), _plant_sentence(diagnosis))))
 
 

@@ -14,6 +14,7 @@ from twinlaw.pages.identify.frequency_plots import SWEEP, TRANSFER, check_name, 
 from twinlaw.pages.identify.frequency_tables import (
     CHECK_HEADING,
     check_rows,
+    cost_text,
     element_tables,
     matrix_tables,
     pair_heading,
@@ -44,7 +45,7 @@ def frequency_page(
     ]
     return Page(
         title=f"{found.result.plant.name}: identified in the frequency domain",
-        verdict=f"{told} of {len(estimates)} parameters identified; cost J = {found.fit.J:.1f}; {remarked(len(found.notes))}.",
+        verdict=f"{told} of {len(estimates)} parameters identified; cost J = {cost_text(found.fit.J)}; {remarked(len(found.notes))}.",
         colour=quality.colour,
         why=quality_sentence(quality),
         facts=(("Equations", found.result.plant.model),),

@@ -33,6 +33,11 @@ CHECK_HEADING = ("record", "output", "rms", "sensor alone", "fit", "fit of the p
 ROUNDING = 1e-9
 
 
+def cost_text(J: float) -> str:
+    """A cost J, of which the field calls 100 good: to a tenth, of a smaller one two digits."""
+    return f"{J:.1f}" if J >= 0.1 else f"{J:.2g}"
+
+
 def pair_heading(truth: Truth | None) -> Row:
     """Of `pair_rows`."""
     return (*PAIR_HEADING, *(() if truth is None else ("off the truth by",)), "")
@@ -56,7 +61,7 @@ def _pair_cells(pair: Pair) -> Row:
         pair.output,
         f"{pair.from_rad_s:.3g} .. {pair.to_rad_s:.3g} rad/s",
         f"{pair.coherence:.3f}",
-        f"{pair.J:.1f}",
+        cost_text(pair.J),
         f"{pair.misfit:.2f}",
         f"{pair.left_dB:.2f} dB, {pair.left_deg:.1f} deg",
         f"{pair.stated_dB:.2f} dB, {pair.stated_deg:.1f} deg",
