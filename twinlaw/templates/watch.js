@@ -48,17 +48,17 @@ function meet(told) {
     $("seek").max = told.duration_s;
     $("speed").replaceChildren(...told.speeds.map((speed) => new Option(speed + " x", speed, speed === 1, speed === 1)));
   } else {
-    $("fields").replaceChildren(...told.outputs.map(field));
+    $("fields").replaceChildren(...told.loops.map(field));
   }
 }
 
-function field(output, place) {
+function field(loop, place) {
   const label = document.createElement("label"), input = document.createElement("input");
-  const [low, high] = facts.limits_deg[place];
+  const [low, high] = loop.limits;
   const digits = Math.max(1, 2 - Math.floor(Math.log10(high - low))), whole = 10 ** digits; // a tenth, or a hundredth of a small range
   const [least, most] = [Math.ceil(low * whole) / whole, Math.floor(high * whole) / whole];
   Object.assign(input, { type: "number", step: "any", min: least, max: most, value: Math.min(Math.max(0, least), most), id: "ref" + place });
-  label.append(`${output.label} [${output.unit}], ${low.toFixed(digits - 1)} to ${high.toFixed(digits - 1)}`, input);
+  label.append(`${loop.label}${loop.unit ? ` [${loop.unit}]` : ""}, ${low.toFixed(digits - 1)} to ${high.toFixed(digits - 1)}`, input);
   return label;
 }
 
@@ -106,14 +106,14 @@ function alive() {
 function tell(text) { $("trouble").textContent = text; $("trouble").hidden = !text; }
 
 $("arm").onclick = () => {
-  const sure = facts.mode !== "FLYING" || confirm("The rotors will turn. Is the rig free and are all hands off?");
+  const sure = facts.mode !== "FLYING" || confirm("The rig will move. Is it free and are all hands off?");
   if (sure) wish({ do: "arm" });
 };
 $("stop").onclick = () => wish({ do: "stop" });
 $("manoeuvre").onclick = () => wish({ do: "manoeuvre" });
 $("references").onsubmit = (event) => {
   event.preventDefault();
-  wish({ do: "reference", deg: facts.outputs.map((_, k) => $("ref" + k).valueAsNumber) });
+  wish({ do: "reference", deg: facts.loops.map((_, k) => $("ref" + k).valueAsNumber) });
 };
 $("play").onclick = () => wish({ do: status.playing ? "pause" : "play" });
 $("speed").onchange = () => wish({ do: "speed", factor: Number($("speed").value) });
@@ -136,7 +136,7 @@ function show() {
   $("stop").disabled = false;
   $("refer").disabled = $("manoeuvre").disabled = !(armed && mine);
   $("note").textContent = armed ? (mine ? (status.manoeuvre ? "flying the manoeuvre; references end it" : "this page flies") : "another page flies; stop works here too")
-    : (facts.mode === "LOOP" ? "host in the loop: a simulated rig moves, the board's power stage stays off" : "the board flies on its own encoders: rotors turn");
+    : (facts.mode === "LOOP" ? "host in the loop: a simulated rig moves, the board's power stage stays off" : "the board flies on its own sensors: the rig moves");
   if (status.trouble) tell(status.trouble);
   showLink();
 }
@@ -197,7 +197,7 @@ function build() {
       { name: "reference", style: REFERENCE, t: rows.t, v: scale(rows.r[k], output.factor) },
       { name: "measured", style: MEASURED, t: rows.t, v: scale(rows.y[k], output.factor) },
       { name: "predicted 1 s before", style: PREDICTED, t: rows.at, v: scale(rows.p[k], output.factor) },
-    ].filter((line) => line.style !== REFERENCE || facts.referenced !== false),
+    ].filter((line) => line.style !== REFERENCE || facts.referenced.includes(output.name)),
   }));
   for (const unit of new Set(facts.outputs.map((output) => output.unit))) charts.push({
     title: `measured minus predicted${unit ? ` [${unit}]` : ""}`,

@@ -1,7 +1,7 @@
 """Validate a board behind a serial port: its table, its self-test, replayed steps bit by bit, and a flight in its loop.
 
---port emulated (the default) runs DIR/firmware.elf on the emulated board; a device such as /dev/ttyACM0 is a real one, whose rotors
-stay off in host-in-the-loop mode as long as their power is off. Writes DIR/validation.json and DIR/validation.csv + .toml.
+--port emulated (the default) runs DIR/firmware.elf on the emulated board; a device such as /dev/ttyACM0 is a real one, whose rig
+stays still in host-in-the-loop mode as long as its power is off. Writes DIR/validation.json and DIR/validation.csv + .toml.
 Exit status 1 when a check does not hold.
 """
 

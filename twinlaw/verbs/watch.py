@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     options.table(parser)
     options.arithmetic(parser)
     parser.add_argument("--rig", type=Path, metavar="PLANT.toml", help="simulated rig; default: the plant itself")
-    parser.add_argument("--fly", action="store_true", help="fly on the board's own sensors: THE ROTORS TURN")
+    parser.add_argument("--fly", action="store_true", help="fly on the board's own sensors: THE RIG MOVES")
     parser.add_argument("--record", type=Path, metavar="LOG.csv", help="leave the last flight there as a run log")
     parser.add_argument("--http-port", type=_tcp_port, default=0, metavar="N", help="of the page; default: a free one")
     options.out(parser)

@@ -52,13 +52,14 @@ class BoardSource:
         return self._table.digest
 
     def facts(self) -> Mapping[str, Any]:
-        """Kind, mode, who the board is, and how far references may go."""
-        axes = self._table.axes
-        limits = [
-            [factor * axis.reference_min_rad, factor * axis.reference_max_rad]
-            for factor, axis in zip(self._factors(), axes, strict=True)
+        """Kind, mode, who the board is, and of each loop, in the table's order, its output and how far references may go."""
+        told = {entry["name"]: entry for entry in self._facts["outputs"]}
+        loops = [
+            {**told[loop.output], "limits": [factor * axis.reference_min_rad, factor * axis.reference_max_rad]}
+            for factor, axis, loop in zip(self._factors(), self._table.axes, self._table.loops, strict=True)
         ]
-        own = {"kind": "board", "mode": self._flight.mode, "limits_deg": limits}
+        referenced = [loop.output for loop in self._table.loops]
+        own = {"kind": "board", "mode": self._flight.mode, "loops": loops, "referenced": referenced}
         return {**self._facts, **own, "table": self._table.digest[:16]}
 
     def status(self) -> Mapping[str, Any]:
@@ -103,7 +104,7 @@ class BoardSource:
         if row is not None and was_armed:
             self.rows.append(row)
         if was_armed and not self.armed:
-            self._lost("the board left its flight by itself: host or encoder lost; its inputs go to 0")
+            self._lost("the board left its flight by itself: host or sensor lost; its inputs go to 0")
         wait_s = 0.0 if self._flight.own_pace else self._flight.ticks * self._table.sample_period_s
         return Step(() if row is None else (row,), wait_s)
 

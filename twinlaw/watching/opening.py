@@ -117,7 +117,7 @@ def _demand_no_board(asked: Watched) -> None:
 def _who(asked: Watched, client: BoardClient) -> str:
     identity = client.identity
     simulated = asked.port == "emulated" or not asked.fly
-    moves = f"simulated rig {asked.rig or asked.plant}" if simulated else "the rig on its encoders"
+    moves = f"simulated rig {asked.rig or asked.plant}" if simulated else "the rig on its sensors"
     return (
         f"board {identity.unique_id}, firmware {identity.firmware_version}, {identity.arithmetic}, "
         f"table {identity.table_digest[:16]}; {moves}; twin {asked.plant}"

@@ -28,7 +28,7 @@ class LogSource:
         self.anew = False
         self._facts = facts
         self._rows = live_rows(log, begins)
-        self._referenced = any(reference_name(output) in log.extra for output in log.columns.outputs)
+        self._referenced = [output for output in log.columns.outputs if reference_name(output) in log.extra]
         self._end_s = self._rows[-1].t_s
         self._now_s, self._next = 0.0, 0
         self._playing, self._speed = True, 1.0

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from records.logs.live import LiveRow
-from records.text.units import unit_suffix
+from records.text.units import shown, unit_suffix
 from sim.bind import BoundPlant
-
-DEG = 57.29577951308232
 
 
 @dataclass(frozen=True)
@@ -63,8 +61,11 @@ def signals(bound: BoundPlant) -> dict[str, Any]:
 
 
 def _signal(name: str, axis: str) -> dict[str, Any]:
-    unit = unit_suffix(name) or ""
-    stem = name.removesuffix(f"_{unit}") if unit else name
-    shown, factor = unit.replace("rad", "deg"), DEG if unit.startswith("rad") else 1.0
-    label = f"{axis} {stem}".strip()
-    return {"name": name, "label": label, "unit": shown.replace("_", "/"), "factor": factor}
+    stem = name.removesuffix(f"_{unit_suffix(name)}") if unit_suffix(name) else name
+    unit, factor = shown(name)
+    return {
+        "name": name,
+        "label": f"{axis} {stem}".strip(),
+        "unit": unit if unit_suffix(name) else "",
+        "factor": factor,
+    }
