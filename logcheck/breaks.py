@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows, in_words
 from logcheck.leaps.seams import behind_lost_times
-from logcheck.stretches import Stretches, part
+from logcheck.stretches import Stretches, part, stretch_name
 from records.errors import BadInput
 from records.log import RunLog
 from records.reasons import Note
@@ -109,7 +109,7 @@ def unbroken(logs: Sequence[RunLog], used: Sequence[Rows], begins: Sequence[Rows
 
 
 def _called(log: RunLog, name: str, rows: slice) -> str:
-    return name if rows.start == 0 else f"{name} from {log.t_s[rows.start]:.6g} s"
+    return name if rows.start == 0 else stretch_name(log, name, rows)
 
 
 def _is_a_log(log: RunLog, rows: slice) -> bool:

@@ -58,7 +58,7 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
             parts.append((log, name, left, name))
             continue
         chosen = _chosen(log, rows)
-        parts += [(part(log, span), f"{name} from {log.t_s[span.start]:.6g} s", left[span], name) for span in chosen]
+        parts += [(part(log, span), stretch_name(log, name, span), left[span], name) for span in chosen]
         spans_s = [(float(log.t_s[span.start]), float(log.t_s[span.stop - 1])) for span in chosen]
         notes.append(Note("stretches", name, {"spans_s": spans_s}, f"{name}: {_kept(log, chosen)}"))
     cut, called, masks, of = zip(*parts, strict=True)
@@ -132,6 +132,11 @@ def _travelled(log: RunLog) -> Array:
     usual = np.nanstd(columns, axis=0)
     way = np.nan_to_num(np.abs(np.diff(columns, axis=0))) / np.where(usual > 0.0, usual, np.inf)
     return np.asarray(np.concatenate([[0.0], np.cumsum(way.sum(axis=1))]))
+
+
+def stretch_name(log: RunLog, name: str, rows: slice) -> str:
+    """What a stretch of a log is called: a note on it may add times of its own."""
+    return f"{name} (from {log.t_s[rows.start]:.6g} s)"
 
 
 def part(log: RunLog, rows: slice) -> RunLog:

@@ -35,7 +35,7 @@ def test_more_than_three_missing_rows_end_a_log(rows: int, count: int) -> None:
 
 def test_stretches_keep_their_times_and_say_where_they_begin() -> None:
     log = lost(log_of(), (600, 699), (1500, 1500), (1800, 1804))
-    assert cut(log) == [("a", 600), ("a from 7 s", 1099), ("a from 18.05 s", 195)]
+    assert cut(log) == [("a", 600), ("a (from 7 s)", 1099), ("a (from 18.05 s)", 195)]
     (found,) = break_findings(log, "a")
     assert found.finding.sentence.startswith("no rows from 5.99 s to 7 s, 17.99 s to 18.05 s: what follows")
 
