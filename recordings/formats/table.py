@@ -49,7 +49,9 @@ FORMATS: Mapping[tuple[str, ...], Format] = {
     (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "h5py", "hdf5", in_other_process=True),
     (".mf4", ".mdf"): Format("mdf", "MDF file", "asammdf", "mdf4", in_other_process=True),
     (".ulg",): Format("ulog", "PX4 log", "pyulog", "px4"),
-    (".parquet",): Format("parquet", "Parquet file", "pyarrow", "parquet", in_other_process=True),
+    (".parquet",): Format("arrow", "Parquet file", "pyarrow", "parquet", in_other_process=True),
+    (".feather", ".arrow"): Format("arrow", "Arrow file", "pyarrow", "parquet", in_other_process=True),
+    (".orc",): Format("arrow", "ORC file", "pyarrow", "parquet", in_other_process=True),
     (".mcap",): Format("bags.mcap", "MCAP file", "mcap", "ros"),
     (".db3", ".bag"): Format("bags.ros_bag", "ROS bag", "rosbags", "ros"),
     (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods"): Format(

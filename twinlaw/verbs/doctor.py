@@ -31,7 +31,7 @@ EXTRAS: Mapping[str, str] = {
     "hdf5": "import: MATLAB 7.3, HDF5",
     "matlab": "import: objects of MATLAB",
     "px4": "import: PX4 logs",
-    "parquet": "import: Parquet files",
+    "parquet": "import: Parquet, Feather and ORC files",
     "ros": "import: MCAP and ROS bags",
     "excel": "import: workbooks of Excel and OpenDocument",
     "tdms": "import: LabVIEW's TDMS files",

@@ -22,6 +22,7 @@ BINARY = {
     b"MDF  ": "an MDF file",
     b"\x89HDF": "an HDF5 file or a MATLAB file of version 7.3",
     b"PAR1": "a Parquet file",
+    b"ARROW1\0\0": "an Arrow file",
     b"\x1f\x8b": "a file that gzip has packed",
     b"\x55Log": "a PX4 log",
     b"\x89MCAP": "an MCAP file",

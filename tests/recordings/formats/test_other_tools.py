@@ -102,6 +102,16 @@ def _parquet(path: Path) -> None:
     parquet.write_table(pa.table(columns), path)
 
 
+def _arrow(path: Path) -> None:
+    pa = pytest.importorskip("pyarrow")
+    write = {".orc": "orc.write_table"}.get(path.suffix, "feather.write_feather")
+    module, name = write.split(".")
+    stamps = pa.array(STAMPS_NS, type=pa.timestamp("ns"))
+    getattr(pytest.importorskip(f"pyarrow.{module}"), name)(
+        pa.table({"stamp": stamps, "u [mV]": 1e3 * RUN["u_V"], "q_m": RUN["q_m"]}), str(path)
+    )
+
+
 def _parquet_arrays(path: Path) -> None:
     """Both signals as arrays of one length, at times of day past midnight."""
     pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
@@ -160,6 +170,9 @@ CASES: Mapping[str, tuple[str, Callable[[Path], None], dict[str, str]]] = {
     "PX4": ("run.ulg", _ulog, {"u_V": "drive.control[0]", "q_m": "encoder[1].x"}),
     "Parquet": ("run.parquet", _parquet, {}),
     "Parquet of arrays": ("run.parquet", _parquet_arrays, {"u_V": "both[0]", "q_m": "both[1]*0.001"}),
+    "Feather": ("run.feather", _arrow, {}),
+    "Arrow": ("run.arrow", _arrow, {}),
+    "ORC": ("run.orc", _arrow, {}),
     "MCAP of JSON": ("run.mcap", _mcap_json, {"q_m": "/rig.arm.q[1]"}),
     "ROS 2 bag": ("run", _bag, {"q_m": "arm.vector.y"}),
     "ROS 2 bag of MCAP": ("run", lambda path: _bag(path, "MCAP"), {"q_m": "arm.vector.y"}),
@@ -217,7 +230,7 @@ def test_an_mcap_file_that_ends_early_gives_what_it_has(tmp_path: Path) -> None:
     assert any("ends early" in told for told in done.found)
 
 
-@pytest.mark.parametrize("suffix", [".mat", ".h5", ".ulg", ".parquet", ".mcap", ".bag", ".db3"])
+@pytest.mark.parametrize("suffix", [".mat", ".h5", ".ulg", ".parquet", ".feather", ".mcap", ".bag", ".db3"])
 @pytest.mark.parametrize("content", [b"", b"no such format at all" * 20, bytes(range(256)) * 4, None])
 def test_a_file_of_another_kind_is_one_clear_line(suffix: str, content: bytes | None, tmp_path: Path) -> None:
     if content is not None:

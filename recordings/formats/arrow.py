@@ -1,4 +1,4 @@
-"""Parquet files, by way of the optional package pyarrow."""
+"""Tables of Apache Arrow and its relatives, Parquet, Feather and ORC, by way of the optional package pyarrow."""
 
 from collections.abc import Iterator
 from importlib import import_module
@@ -16,24 +16,30 @@ from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
 from records.errors import BadInput
 
+READERS = {
+    ".parquet": ("pyarrow.parquet", "Parquet"),
+    ".feather": ("pyarrow.feather", "Feather"),
+    ".arrow": ("pyarrow.feather", "Arrow"),  # Feather's second version is Arrow's file
+    ".orc": ("pyarrow.orc", "ORC"),
+}
 _NS = 1e-9
 
 
 def read(path: Path, asked: TextLayout) -> Contents:
     """The columns of numbers, those of a structure behind a point, entries of arrays as `name[0]`, dates in seconds from the first.
 
-    Raises BadInput when pyarrow is not installed, and for no Parquet file.
+    Raises BadInput when pyarrow is not installed, and for a file of another kind.
     """
+    reader, called = READERS[path.suffix.lower()]
     package("pyarrow", "parquet", path)
-    parquet = package("pyarrow.parquet", "parquet", path)
+    read_table = package(reader, "parquet", path).read_table
     try:
-        table = parquet.read_table(path)
+        table = read_table(path)
     except FileNotFoundError as error:
-        raise BadInput("Parquet file", str(path), "no such file", "a readable file", "check the path") from error
+        raise BadInput(f"{called} file", str(path), "no such file", "a readable file", "check the path") from error
     except Exception as error:  # as many classes as the package has parts
-        raise BadInput(
-            "Parquet file", str(path), f"no Parquet ({error})", "a .parquet file", "export it again"
-        ) from error
+        expected = f"a {path.suffix} file"
+        raise BadInput(f"{called} file", str(path), f"no {called} ({error})", expected, "export it again") from error
     while any(str(field.type).startswith("struct") for field in table.schema):
         table = table.flatten()
     signals: dict[str, Signal] = {}
