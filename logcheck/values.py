@@ -97,19 +97,28 @@ def value_findings(
     log = without(log, zeros)
     again = read_again(log)
     seams = list(seam_findings(log, name, steps, again, positions))
-    yield from seams
     begins = beginning(seams, len(log.t_s))
     clipped = list(clipped_findings(log, name, steps, begins, positions, stops))
+    read = without(log, clipped)
+    held = list(held_findings(read, name))
+    dead = held or list(dead_findings(read, name, steps, begins, positions, again))
+    if _ends_in(dead, begins):  # a leap out of readings that are none is no seam
+        seams = list(seam_findings(without(log, dead), name, steps, again, positions))
+        begins = beginning(seams, len(log.t_s))
+    yield from seams
     yield from clipped
-    log = without(log, clipped)
-    held = list(held_findings(log, name))
-    dead = held or list(dead_findings(log, name, steps, begins, positions, again))
+    log = read
     yield from dead
     if not held:
         yield from stale_findings(log, name, steps, positions)
     yield from end_findings(without(log, dead), name, steps, begins, positions, moved_by)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
+
+
+def _ends_in(dead: Collection[Found], begins: Rows) -> bool:
+    """Whether another log is said to begin in the row in which an output is read again."""
+    return any(bool((entry.excluded[:-1] & begins[1:]).any()) for entry in dead if entry.excluded is not None)
 
 
 def _missing_numbers(log: RunLog, name: str) -> Iterator[Found]:

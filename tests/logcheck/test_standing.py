@@ -142,3 +142,14 @@ def test_a_range_that_ends_where_an_axis_is_held_beyond_it_is_told_by_what_the_p
     assert found.excluded is not None
     np.testing.assert_array_equal(found.excluded, log.y[:, 0] <= level)
     assert list(foretold_findings(log, "a", plant(), facts, none)) == []
+
+
+def test_a_leap_out_of_a_stand_of_a_sensor_is_no_other_recording() -> None:
+    """Truth: from 8.2 s to 8.7 s the carriage of an open loop is not read, at 0.3 m/s; it is one recording."""
+    carriage = load("plants/emps.toml")
+    log = fly(carriage)
+    y = log.y.copy()
+    y[820:870] = y[820]
+    found = [entry.kind for entry in examine([replace(log, y=y)], carriage, names=["log"]).findings]
+    assert "dead_stretch" in found
+    assert "seam" not in found
