@@ -24,9 +24,8 @@ def grid_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
     own = grid_step(values)
     if np.ptp(values) >= thresholds.FINEST_GRID * step and own <= thresholds.COARSER * step:
         return
-    held = _phase(values, step)
     span = (float(log.t_s[0]), float(log.t_s[-1]))
-    if held < thresholds.OFF_GRID and own == 0.0:
+    if lies_on_none(values, step):
         sentence = f"{column} does not lie on the encoder's grid of {step:.5g} or on any other: simulated, filtered or interpolated numbers"
         yield Found(Finding("simulated_looking", name, column, *span, sentence))
     elif own > 0.0 and _is_another(own / step):
@@ -129,6 +128,17 @@ def grid_step(values: Array) -> float:
 def _phase(values: Array, step: float) -> float:
     """Length of the mean of exp(2 pi i y / step): 1 on the grid whatever its offset."""
     return float(np.abs(np.mean(np.exp(2j * np.pi * (values / step)))))
+
+
+def lies_on_none(values: Array, step: float) -> bool:
+    """Whether readings lie neither on a grid of this step nor on any other."""
+    return bool(values.size) and _phase(values, step) < thresholds.OFF_GRID and grid_step(values) == 0.0
+
+
+def lies_on(values: Array, step: float) -> bool:
+    """Whether they lie on that grid at so many of its points that it is no chance."""
+    points = np.unique(np.round(values / step)).size
+    return points >= thresholds.LEAST_GRID_POINTS and _phase(np.unique(values), step) > thresholds.ON_GRID
 
 
 def is_on(values: Array, step: float) -> bool:

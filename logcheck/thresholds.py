@@ -148,6 +148,7 @@ COARSE_SHARE = Limit(
 )
 COARSER = Limit(10.0, "steps", "that no reading stands between by chance")
 ON_GRID = Limit(0.97, "mean phase", "1 for numbers on the grid, 0 for any")
+LEAST_GRID_POINTS = Count(20, "points of a grid", "that a column of another kind shares none of by chance")
 OFF_GRID = Limit(0.6, "mean phase", "1 for numbers on the grid, 0 for any")
 BEYOND_STOP_rad = Limit(0.1, "rad", "offsets and scales of a sensor may carry an angle beyond its stop")
 UNIT_QUANTILE = Limit(0.95, "quantile", "rows that speak for the unit")

@@ -4,12 +4,14 @@ An input and an output in each other's place: what is called an axis stands and 
 moves as an axis does. No mass leaps from rest to rest within one row, time and again.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import chain, product
 
 import numpy as np
 
 from logcheck import thresholds
 from logcheck.finding import REFUSE, Array, Finding, Found
+from logcheck.grid import WHOLE, lies_on, lies_on_none, some
 from recordings.mapping.wraps import angle_past_its_end
 from records.log import RunLog
 from records.text.units import unit_of
@@ -58,21 +60,46 @@ def wrap_findings(log: RunLog, name: str, steps: Mapping[str, float], positions:
 
 
 def exchange_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
-    """The first output of an axis that is a staircase, with the first input that is none and changes all along."""
+    """The first output of an axis that is a staircase, with the first input that is none and changes all along; or one that lies on no
+    grid, with the first input that lies on that of its sensor."""
     states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
     of_axes = [output for output, expression in bound.model.outputs.items() if str(expression) in states]
-    sensors = bound.plant.sensors
+    exchanged = next(chain(_stairs(log, of_axes, bound.plant.sensors), _grids(log, of_axes, bound.plant.sensors)), None)
+    if exchanged is None:
+        return
+    command, output, why = exchanged
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    got = f"{command} and {output} stand in each other's place: {why}"
+    expected, remedy = "columns that are what they are called", f"exchange {command} and {output}"
+    yield Found(Finding("columns", name, output, *span, got, REFUSE, 0, expected, remedy))
+
+
+Exchanged = tuple[str, str, str]  # an input, an output, and what tells that each stands in the other's place
+
+
+def _stairs(log: RunLog, of_axes: Sequence[str], sensors: Mapping[str, float]) -> Iterator[Exchanged]:
     stairs = [output for output in of_axes if _is_a_staircase(log.column(output), sensors.get(output, 0.0))]
     moving = [column for column in log.columns.inputs if _moves_on(log.column(column))]
-    if not stairs or not moving:
-        return
-    span = (float(log.t_s[0]), float(log.t_s[-1]))
-    got = (
-        f"{moving[0]} and {stairs[0]} stand in each other's place: {stairs[0]} stands and leaps from row to row as a command does, "
-        f"{moving[0]} moves as an axis does"
-    )
-    expected, remedy = "columns that are what they are called", f"exchange {moving[0]} and {stairs[0]}"
-    yield Found(Finding("columns", name, stairs[0], *span, got, REFUSE, 0, expected, remedy))
+    for output, command in product(stairs, moving):
+        why = f"{output} stands and leaps from row to row as a command does, {command} moves as an axis does"
+        yield command, output, why
+
+
+def _grids(log: RunLog, of_axes: Sequence[str], sensors: Mapping[str, float]) -> Iterator[Exchanged]:
+    """Inputs of another unit, as a converter of volts may have one step both ways; of a round decimal, numbers have it by their digits."""
+    for output, command in product(of_axes, log.columns.inputs):
+        step, unit = sensors.get(output, 0.0), unit_of(output)
+        if step <= 0.0 or unit == unit_of(command) or _is_round(step):
+            continue
+        if lies_on(some(log.column(command)), step) and lies_on_none(some(log.column(output)), step):
+            where = f"the grid of {output}'s sensor, {step:.5g} {unit}".rstrip()
+            yield command, output, f"{command} lies on {where}, and {output} on none"
+
+
+def _is_round(step: float) -> bool:
+    """Whether a step is a decimal of two digits: 0.001, 0.0015, 0.25."""
+    digits = step / 10.0 ** (np.floor(np.log10(step) + WHOLE) - 1.0)
+    return bool(abs(digits - round(digits)) < WHOLE)
 
 
 def _moves(values: Array) -> tuple[Array, float]:

@@ -32,6 +32,21 @@ def test_inputs_that_stand_or_creep_beside_an_axis_are_no_exchange(arm: BoundPla
     assert "columns" not in [found.kind for found in examine([replace(log, u=u)], arm, names=["log"]).findings]
 
 
+@pytest.mark.parametrize(
+    ("step", "exchanged", "told"), [(1.534e-3, True, True), (1.534e-3, False, False), (1.5e-3, True, False)]
+)
+def test_an_input_on_the_grid_of_an_output_that_lies_on_none_is_exchanged_with_it(
+    arm: BoundPlant, log: RunLog, step: float, exchanged: bool, told: bool
+) -> None:
+    """Truth: a smooth command and an encoder of 4096 steps a turn; of 0.0015 rad a decimal, on which a command's digits may lie too."""
+    angle = step * np.round(0.3 * np.sin(1.3 * log.t_s) / step)[:, None]
+    command = 0.3 * np.sin(1.3 * log.t_s + 0.4)[:, None]
+    u, y = (angle, command) if exchanged else (command, angle)
+    own = bind(replace(arm.plant, sensors={"theta_rad": step}))
+    found = [entry.sentence for entry in examine([replace(log, u=u, y=y)], own, names=["log"]).refusals]
+    assert any("u_V lies on the grid of theta_rad's sensor, 0.001534 rad" in sentence for sentence in found) is told
+
+
 def test_an_axis_that_moves_by_single_steps_of_its_encoder_is_no_command(arm: BoundPlant, log: RunLog) -> None:
     """Truth: an axis that creeps to and fro over three steps, each for a second, under an input that moves all along."""
     step = arm.plant.sensors["theta_rad"]
