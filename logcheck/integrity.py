@@ -95,6 +95,7 @@ OTHER_NUMBERS = (
     "time_unit",
     "unit_slip",
     "sign_turns",
+    "columns",
 )  # kinds of findings: such numbers can be neither replayed nor predicted
 
 

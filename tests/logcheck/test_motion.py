@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from logcheck.between import duplicate_findings
-from logcheck.integrity import demand, examine
+from logcheck.integrity import OTHER_NUMBERS, demand, examine
 from logcheck.leaps.motion import wrap_findings
 from records.errors import BadInput
 from records.log import RunLog
@@ -23,7 +23,7 @@ def log(arm: BoundPlant) -> RunLog:
 def test_an_input_in_the_place_of_an_axis_is_refused_by_name(arm: BoundPlant, log: RunLog) -> None:
     exchanged = replace(log, u=log.y, y=log.u)
     with pytest.raises(BadInput, match=r"u_V and theta_rad stand in each other's place.*exchange u_V and theta_rad"):
-        demand(examine([exchanged], arm, names=["log"]))
+        demand(examine([exchanged], arm, names=["log"]), OTHER_NUMBERS)
 
 
 @pytest.mark.parametrize("hand", [False, True])
