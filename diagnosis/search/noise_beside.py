@@ -24,17 +24,19 @@ def with_noise_beside(
     case: Case, fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis
 ) -> list[FittedHypothesis]:
     """Hypotheses with the noise with a memory that the logs tell of beside their names, each with its own, where that is likelier; none
-    where beside the best of them, and all that come near it, it takes what is no noise.
+    where the best of them, and all that come near it, take none or take what is no noise.
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
-    Where it does so beside the best, evidence under it is not to be compared with evidence without. Of each number of effects those are
-    asked that it could bring near; then what is hardly told from those that lead, and the likeliest without each of its effects.
+    Where it does so beside the best, evidence under it is not to be compared with evidence without. Where the best leave none, it would
+    only take what the others lack. Of each number of effects those are asked that it could bring near; then what is hardly told from those
+    that lead, and the likeliest without each of its effects.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
     near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.NEAR_BEST)
     noisy = ((entry, with_own) for entry in near if (with_own := _with_memory(case, entry)) is not None)
-    best, first = next(noisy, (None, None))
+    taken = ((entry, with_own) for entry, with_own in noisy if has_memory(case, with_own.fit.hypothesis))
+    best, first = next(taken, (None, None))
     if best is None or first is None:
         return []
     sizes = {len(entry.effects) for entry in fitted}
