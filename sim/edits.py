@@ -135,6 +135,12 @@ def step(at_s: Expression) -> Expression:
     return positive(way) - positive(way - 1)
 
 
+def speed_name(model: Model, name: str) -> str:
+    """An axis' speed as classes and equations write it: psi_dot of an axis at psi_rad, and its own symbol (omega) without a position."""
+    axis = axis_of(model, name)
+    return short(str(axis.velocity)) if axis.position is None else f"{short(model.places.axes[name].angle)}_dot"
+
+
 def short(name: str) -> str:
     """A column without its unit: psi of psi_rad."""
     unit = unit_suffix(name)

@@ -17,6 +17,7 @@ from diagnosis.detect.forms import REST
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import Quantity, Signals, angle_names, rotor_name, signals, through
 from diagnosis.hypothesis.case import Case
+from sim.edits import speed_name
 
 Array = NDArray[np.float64]
 # A bumper's edge then lies within a thirtieth of the way of one. Of three rigs 8 explain two as well, a stiff bumper a tenth worse.
@@ -231,8 +232,8 @@ def _angle(case: Case, axis: str) -> Quantity:
 
 
 def _speed(case: Case, axis: str) -> Quantity:
-    place, q = case.library.bound.model.places.axes[axis], _angle(case, axis)
-    return Quantity(f"{q.name}_dot", f"{q.unit}/s", place.speed_size)
+    model = case.library.bound.model
+    return Quantity(speed_name(model, axis), f"{_angle(case, axis).unit}/s", model.places.axes[axis].speed_size)
 
 
 def _rate(of: Quantity) -> Quantity:

@@ -11,6 +11,7 @@ from diagnosis.detect.shapes import SQUARE, Shapes, beyond, follower, jitter, pl
 from diagnosis.detect.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals, through
 from diagnosis.detect.waves import likely_waves
 from diagnosis.hypothesis.case import Case
+from sim.edits import speed_name
 
 Array = NDArray[np.float64]
 REST = 0.02  # of a speed's typical size: below it the sign of the speed fades
@@ -70,8 +71,8 @@ def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Arra
     """What a torque may depend on, with some shapes for each."""
     names = angle_names(case)
     a, v = s.angle[axis], s.speed[axis]
-    q, w, sign = names[axis], f"{names[axis]}_dot", np.tanh(v / REST)
-    unit = in_units(w, case.library.bound.model.places.axes[axis].speed_size)
+    q, w, sign = names[axis], _speed_name(case, axis), np.tanh(v / REST)
+    unit = _speed_unit(case, axis)
     angles: Shapes = {"sin({x})": np.sin, "{x}": lambda x: x, "{x}^2": np.square}
     doubled = waves_a_turn((2,), ("sin({count} {x})",))
     yield from shaped(q, q, a, {**angles, **doubled, "{x}^3": lambda x: x**3, **waves_a_turn(range(3, 17))})
@@ -91,7 +92,7 @@ def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Arra
     yield from _from_rotors(case, s, w, unit, v, sign)
     for other in s.angle:
         if other != axis:
-            yield from _between(names[other], s.angle[other], s.speed[other], unit, v)
+            yield from _between((names[other], _speed_name(case, other)), s.angle[other], s.speed[other], unit, v)
 
 
 def _from_rotors(case: Case, s: Signals, w: str, unit: str, v: Array, sign: Array) -> Iterator[tuple[str, str, Array]]:
@@ -105,10 +106,14 @@ def _from_rotors(case: Case, s: Signals, w: str, unit: str, v: Array, sign: Arra
         yield f"d{o}/dt", f"d{x}/dt", np.gradient(speed, s.t)
 
 
-def _between(q: str, angle: Array, speed: Array, own: str, v: Array) -> Iterator[tuple[str, str, Array]]:
+def _between(
+    names: tuple[str, str], angle: Array, speed: Array, own: str, v: Array
+) -> Iterator[tuple[str, str, Array]]:
+    """What of a torque may come from another axis, by the names of its angle and speed."""
+    q, w = names
     yield from shaped(q, q, angle, {"{x}": lambda x: x, "{x}^2": np.square})
-    yield f"{q}_dot", f"{q}_dot", speed
-    yield f"{q}, {q}_dot, {own}", f"sin(2 {q}) {q}_dot {own}", np.sin(2.0 * angle) * speed * v
+    yield w, w, speed
+    yield f"{q}, {w}, {own}", f"sin(2 {q}) {w} {own}", np.sin(2.0 * angle) * speed * v
     yield f"{q}, {own}", f"{q} {own}", v * angle
 
 
@@ -118,10 +123,7 @@ def _inertias(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Arr
     acceleration = np.gradient(s.speed[axis], s.t)
     for other in s.angle:
         if other != axis:
-            q, own = (
-                names[other],
-                f"d{in_units(f'{names[axis]}_dot', case.library.bound.model.places.axes[axis].speed_size)}/dt",
-            )
+            q, own = names[other], f"d{_speed_unit(case, axis)}/dt"
             yield q, f"cos({q}) {own}", acceleration * np.cos(s.angle[other])
             yield q, f"sin({q})^2 {own}", acceleration * np.sin(s.angle[other]) ** 2
 
@@ -184,8 +186,8 @@ def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row
         if name == axis:
             near = np.exp(-(angle - angle.min()) / 0.3)
             yield rotor, f"thrust({q})", f"exp(-{q} / 0.3) {own}", target, near * thrust
-            w = in_units(f"{q}_dot", library.bound.model.places.axes[name].speed_size)
-            yield rotor, f"thrust({o}, {q}_dot)", f"|{x}| {w}", target, np.abs(speed) * s.speed[name] * s.h
+            w, unit = _speed_name(case, name), _speed_unit(case, name)
+            yield rotor, f"thrust({o}, {w})", f"|{x}| {unit}", target, np.abs(speed) * s.speed[name] * s.h
     for other, value in s.rotor.items():
         if other != rotor:
             shape = f"|{rotor_unit(case, other)}| {own}"
@@ -200,12 +202,21 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
         if axis not in s.angle:
             continue
         a, v, q = s.angle[axis], s.speed[axis], names[axis]
-        w = in_units(f"{q}_dot", model.places.axes[axis].speed_size)
+        w, unit = _speed_name(case, axis), _speed_unit(case, axis)
         target = len(library.states) + library.outputs.index(sensor.output)
         for _, shape, value in shaped(q, q, a, {"{x}": lambda x: x, "{x}^2": np.square, **waves_a_turn(range(3, 33))}):
             yield place, f"output({q}) of {q}", shape, target, value
-        yield place, f"output({q}_dot) of {q}", w, target, v
-        yield place, f"output(sgn {q}_dot) of {q}", f"sgn({w})", target, np.tanh(v / REST)
+        yield place, f"output({w}) of {q}", unit, target, v
+        yield place, f"output(sgn {w}) of {q}", f"sgn({unit})", target, np.tanh(v / REST)
         for other in s.angle:
             if other != axis:
                 yield place, f"output({names[other]}) of {q}", names[other], target, s.angle[other]
+
+
+def _speed_name(case: Case, axis: str) -> str:
+    return speed_name(case.library.bound.model, axis)
+
+
+def _speed_unit(case: Case, axis: str) -> str:
+    """An axis' speed in units of its size, as text."""
+    return in_units(_speed_name(case, axis), case.library.bound.model.places.axes[axis].speed_size)

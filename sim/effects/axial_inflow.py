@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, with_torque
+from sim.edits import axis_of, speed_name, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -20,12 +20,12 @@ def effects(model: Model) -> Iterator[Effect]:
         axis = model.places.pushed_by(place)
         entry = model.places.axes[axis]
         unit = 0.3 * entry.torque_size / rotor.speed_size
-        angle = entry.angle.removesuffix("_rad")
+        speed = speed_name(model, axis)
         yield Effect(
             name=f"{place}.axial_inflow",
-            depends=f"thrust(omega_{rotor.letter}, {angle}_dot)",
+            depends=f"thrust(omega_{rotor.letter}, {speed})",
             parameters=(EffectParameter("c", f"{entry.torque_unit} s^2", -20.0 * unit, 20.0 * unit, unit, 0.0),),
-            equation=f"torque on {axis} - c |omega_{rotor.letter}| {angle}'",
+            equation=f"torque on {axis} - c |omega_{rotor.letter}| {speed}",
             story="A propeller moving along its own axis meets more air from ahead and pushes less: it brakes the motion.",
             source="blade element theory, to first order in the inflow",
             edit=lambda model, c, place=place, axis=axis: with_torque(

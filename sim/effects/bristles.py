@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import MOST_GIVEN, NEGLIGIBLE, axis_of, short, sign_of, strain_rate, with_axis, with_state
+from sim.edits import MOST_GIVEN, NEGLIGIBLE, axis_of, short, sign_of, speed_name, strain_rate, with_axis, with_state
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
 
@@ -21,13 +21,13 @@ def effects(model: Model) -> Iterator[Effect]:
     for axis, entry in model.places.axes.items():
         if axis_of(model, axis).coulomb == 0:
             continue
-        angle, unit = short(entry.angle), entry.length_unit
+        angle, speed, unit = short(entry.angle), speed_name(model, axis), entry.length_unit
         length = 1.0 if unit == "rad" else entry.speed_size
         yield Effect(
             name=f"{axis}.bristles",
-            depends=f"torque({angle}, sgn {angle}_dot)",
+            depends=f"torque({angle}, sgn {speed})",
             parameters=(EffectParameter("z_0", unit, 0.0, MOST_GIVEN * length, 0.002 * length, 0.0),),
-            equation=f"- b_c z/z_0, z' = {angle}' - |{angle}'| z/z_0",
+            equation=f"- b_c z/z_0, z' = {speed} - |{speed}| z/z_0",
             story="A pushed axis does not stick: it gives a little like a brush, and springs back, until it slides.",
             source="Dahl 1968",
             edit=lambda model, z_0, axis=axis: _edit(model, z_0, axis),

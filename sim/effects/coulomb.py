@@ -5,7 +5,7 @@
 
 from collections.abc import Iterator
 
-from sim.edits import axis_of, short, with_friction
+from sim.edits import axis_of, speed_name, with_friction
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.prior import COMMON
@@ -14,15 +14,15 @@ from sim.prior import COMMON
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each axis, above the nominal level."""
     for axis, entry in model.places.axes.items():
-        size, angle = entry.torque_size, short(entry.angle)
+        size, speed = entry.torque_size, speed_name(model, axis)
         level = axis_of(model, axis).coulomb
         yield Effect(
             name=f"{axis}.coulomb",
-            depends=f"torque(sgn {angle}_dot)",
+            depends=f"torque(sgn {speed})",
             parameters=(
                 EffectParameter("b", entry.torque_unit, 0.0, size, 0.006 * size, 0.0, (0.006 * size, 0.06 * size)),
             ),
-            equation=f"- b sgn({angle}')",
+            equation=f"- b sgn({speed})",
             story="The bearing rubs with a constant force: the axis stops early and sticks until pushed hard enough.",
             source="Coulomb friction",
             prior=COMMON,

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import NEGLIGIBLE, axis_of, short, with_axis
+from sim.edits import NEGLIGIBLE, axis_of, speed_name, with_axis
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -23,12 +23,12 @@ def effects(model: Model) -> Iterator[Effect]:
     for axis, entry in model.places.axes.items():
         if axis_of(model, axis).coulomb == 0:
             continue
-        speed, angle = entry.speed_size, short(entry.angle)
+        usual, speed = entry.speed_size, speed_name(model, axis)
         yield Effect(
             name=f"{axis}.creep",
-            depends=f"torque({angle}_dot)",
-            parameters=(EffectParameter("v_c", f"{entry.length_unit} s^-1", 0.0, 0.05 * speed, 0.005 * speed, 0.0),),
-            equation=f"- b_c tanh({angle}'/v_c)",
+            depends=f"torque({speed})",
+            parameters=(EffectParameter("v_c", f"{entry.length_unit} s^-1", 0.0, 0.05 * usual, 0.005 * usual, 0.0),),
+            equation=f"- b_c tanh({speed}/v_c)",
             story="A pushed axis does not stick: it creeps, the faster the harder it is pushed, until it slides.",
             source="Coulomb friction with its jump at rest rounded off",
             edit=lambda model, v_c, axis=axis: _edit(model, v_c, axis),

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import positive, short, sign_of, with_axis
+from sim.edits import positive, sign_of, speed_name, with_axis
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.prior import COMMON, Prior
@@ -21,10 +21,10 @@ PRIOR = Prior(
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each axis; the level stays at or above 0."""
     for axis, entry in model.places.axes.items():
-        size, angle = entry.torque_size, short(entry.angle)
+        size, speed = entry.torque_size, speed_name(model, axis)
         yield Effect(
             name=f"{axis}.friction_asymmetry",
-            depends=f"torque(sgn {angle}_dot)",
+            depends=f"torque(sgn {speed})",
             parameters=(
                 EffectParameter(
                     "difference",
@@ -36,7 +36,7 @@ def effects(model: Model) -> Iterator[Effect]:
                     (-0.005 * size, 0.005 * size),
                 ),
             ),
-            equation=f"- (b_c + difference/2 sgn({angle}')) sgn({angle}')",
+            equation=f"- (b_c + difference/2 sgn({speed})) sgn({speed})",
             story="The bearing rubs harder one way than the other.",
             source="Coulomb friction by direction",
             prior=PRIOR,

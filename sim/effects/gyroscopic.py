@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, with_torque
+from sim.edits import axis_of, short, speed_name, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.prior import COMMON
@@ -26,15 +26,16 @@ def effects(model: Model) -> Iterator[Effect]:
 def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
     main = model.places.lifting
     over, base = model.places.axes[tilting], model.places.axes[level]
-    psi, phi, size = short(over.angle), short(base.angle), base.torque_size
+    psi, psi_dot, phi_dot = short(over.angle), speed_name(model, tilting), speed_name(model, level)
+    size = base.torque_size
     spin, unit = 0.3 * size / 600.0, f"{base.torque_unit} s^2"
     letter = model.places.rotors[main].letter if main else ""
     if main:
         yield Effect(
             name=f"{level}.gyroscopic",
-            depends=f"torque({psi}_dot, omega_{letter}, {psi})",
+            depends=f"torque({psi_dot}, omega_{letter}, {psi})",
             parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
-            equation=f"- K {psi}' omega_{letter} sin({psi})",
+            equation=f"- K {psi_dot} omega_{letter} sin({psi})",
             story="Tipping the fast main rotor kicks the arm sideways, as a spinning top would.",
             source="reciprocal of a term in seed 000 eq (8)",
             prior=COMMON,
@@ -45,9 +46,9 @@ def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
         )
     yield Effect(
         name=f"{level}.coriolis",
-        depends=f"torque({psi}, {psi}_dot, {phi}_dot)",
+        depends=f"torque({psi}, {psi_dot}, {phi_dot})",
         parameters=(EffectParameter("c", unit, -size, size, 0.05 * size, 0.0),),
-        equation=f"+ c sin(2 {psi}) {psi}' {phi}'",
+        equation=f"+ c sin(2 {psi}) {psi_dot} {phi_dot}",
         story="Pulling the arm in while it turns makes it turn faster, as a skater does.",
         source="Lagrange: reciprocal of the centrifugal term in seed 000 eq (8)",
         said="Coriolis torque",
@@ -61,13 +62,14 @@ def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
 def _on_tilting_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
     tail = model.places.turning
     over, base = model.places.axes[tilting], model.places.axes[level]
-    psi, phi, size = short(over.angle), short(base.angle), base.torque_size
+    psi, phi_dot = short(over.angle), speed_name(model, level)
+    size = base.torque_size
     spin, unit = 0.3 * size / 600.0, f"{base.torque_unit} s^2"
     yield Effect(
         name=f"{tilting}.centrifugal",
-        depends=f"torque({phi}_dot, {psi})",
+        depends=f"torque({phi_dot}, {psi})",
         parameters=(EffectParameter("c", unit, -size, size, 0.05 * size, 0.0),),
-        equation=f"+ c {phi}'^2 sin(2 {psi})",
+        equation=f"+ c {phi_dot}^2 sin(2 {psi})",
         story="Turning fast throws the arm towards the horizontal, with another strength than the model says.",
         source="seed 000 eq (8), whose factor and sign are doubtful",
         edit=lambda model, c: with_torque(
@@ -78,9 +80,9 @@ def _on_tilting_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]
         letter = model.places.rotors[tail].letter
         yield Effect(
             name=f"{tilting}.tail_gyroscopic",
-            depends=f"torque(omega_{letter}, {phi}_dot)",
+            depends=f"torque(omega_{letter}, {phi_dot})",
             parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
-            equation=f"+ K omega_{letter} {phi}'",
+            equation=f"+ K omega_{letter} {phi_dot}",
             story="Turning the arm with the tail rotor spinning tips it up or down.",
             source="Euler's equations",
             edit=lambda model, K: with_torque(model, tilting, K * _speed(model, tail) * _rate(model, level)),

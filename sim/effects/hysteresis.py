@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import MOST_GIVEN, axis_of, short, strain_rate, with_state, with_torque
+from sim.edits import MOST_GIVEN, axis_of, short, speed_name, strain_rate, with_state, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
 from sim.prior import NOTHING_NEW, Unlikely
@@ -19,19 +19,19 @@ from sim.prior import NOTHING_NEW, Unlikely
 def effects(model: Model) -> Iterator[Effect]:
     """Eqs (1) and (2) on each axis."""
     for axis, entry in model.places.axes.items():
-        angle, unit = short(entry.angle), entry.length_unit
+        angle, speed, unit = short(entry.angle), speed_name(model, axis), entry.length_unit
         length = 1.0 if unit == "rad" else entry.speed_size
         size = entry.torque_size / length
         yield Effect(
             name=f"{axis}.cable_hysteresis",
-            depends=f"torque({angle}, sgn {angle}_dot)",
+            depends=f"torque({angle}, sgn {speed})",
             parameters=(
                 EffectParameter("k", f"{entry.torque_unit} {unit}^-1", 0.0, 4.0 * size, 0.1 * size, 0.0),
                 EffectParameter(
                     "z_0", unit, 0.05 * length, 2.0 * length, 0.2 * length, starts=(0.1 * length, 0.3 * length)
                 ),
             ),
-            equation=f"- k z, z' = {angle}' - |{angle}'| z/z_0",
+            equation=f"- k z, z' = {speed} - |{speed}| z/z_0",
             story="The cable resists a turn, then slips in its clamp; on the way back it resists the other way.",
             source="Bouc 1967, Wen 1976, with exponent 1",
             edit=lambda model, k, z_0, axis=axis: _edit(model, k, z_0, axis, "cable"),
@@ -42,14 +42,14 @@ def effects(model: Model) -> Iterator[Effect]:
         )
         yield Effect(
             name=f"{axis}.presliding",
-            depends=f"torque({angle}, sgn {angle}_dot)",
+            depends=f"torque({angle}, sgn {speed})",
             parameters=(
                 EffectParameter("b", entry.torque_unit, 0.0, entry.torque_size, 0.01 * entry.torque_size, 0.0),
                 EffectParameter(
                     "z_0", unit, MOST_GIVEN * length, 0.1 * length, 0.02 * length, unlikely=_bristles(length)
                 ),
             ),
-            equation=f"- b z/z_0, z' = {angle}' - |{angle}'| z/z_0",
+            equation=f"- b z/z_0, z' = {speed} - |{speed}| z/z_0",
             story="The bearing gives a little like a brush before it slides.",
             source="Dahl 1968",
             edit=lambda model, b, z_0, axis=axis: _edit(model, b / z_0, z_0, axis, "bearing"),

@@ -13,17 +13,16 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import axis_of, short, with_axis, with_torque
+from sim.edits import axis_of, short, speed_name, with_axis, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.places import AxisPlace
 
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) where one axis sits on the other, (2) where the model has the bare cosine, (3) on each axis that gravity turns."""
     for axis, entry in model.places.axes.items():
         if entry.gravity is not None:
-            yield _by_own_angle(axis, entry)
+            yield _by_own_angle(model, axis)
     level, tilting = model.places.level, model.places.tilting
     if not level:
         return
@@ -57,8 +56,8 @@ def effects(model: Model) -> Iterator[Effect]:
         )
 
 
-def _by_own_angle(axis: str, entry: AxisPlace) -> Effect:
-    angle = short(entry.angle)
+def _by_own_angle(model: Model, axis: str) -> Effect:
+    angle, speed = short(model.places.axes[axis].angle), speed_name(model, axis)
     return Effect(
         name=f"{axis}.varying_inertia",
         depends=f"inertia({angle})",
@@ -67,7 +66,7 @@ def _by_own_angle(axis: str, entry: AxisPlace) -> Effect:
             EffectParameter("q_0", "rad", -1.6, 1.6, 0.0, starts=(0.0, 1.57)),
             EffectParameter("e", "1", 0.0, 1.0, 0.0, refining=True),
         ),
-        equation=f"inertia J times (1 + a sin({angle} - q_0)), torque - e (a / 2) J cos({angle} - q_0) {angle}_dot^2",
+        equation=f"inertia J times (1 + a sin({angle} - q_0)), torque - e (a / 2) J cos({angle} - q_0) {speed}^2",
         story="Something on the arm slides or swings as it tilts, so it is harder to turn at another height.",
         source="Lagrange's equation of an inertia that varies with the angle",
         edit=lambda model, a, q_0, e: _varied(model, axis, a, q_0, e),

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, lever, short, with_torque
+from sim.edits import axis_of, lever, short, speed_name, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import AxisPlace
@@ -32,7 +32,7 @@ def effects(model: Model) -> Iterator[Effect]:
         yield _offset(axis, entry)
         if entry.level:
             yield _tilt(model, axis, entry)
-            yield _wind(axis, entry)
+            yield _wind(model, axis, entry)
             yield _lift(model, axis)
 
 
@@ -90,17 +90,17 @@ def _tilted(model: Model, axis: str, m: sympy.Symbol, Phi_0: sympy.Symbol, e: sy
     return with_torque(model, tilting, e * m * sympy.cos(turned) * rises)
 
 
-def _wind(axis: str, entry: AxisPlace) -> Effect:
-    size, angle = entry.torque_size, short(entry.angle)
+def _wind(model: Model, axis: str, entry: AxisPlace) -> Effect:
+    size, angle, speed = entry.torque_size, short(entry.angle), speed_name(model, axis)
     return Effect(
         name=f"{axis}.wind",
-        depends=f"torque({angle}, {angle}_dot)",
+        depends=f"torque({angle}, {speed})",
         parameters=(
             EffectParameter("c", entry.torque_unit, 0.0, size, 0.05 * size, 0.0),
             EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(-1.57, 0.0, 1.57, 3.14)),
             EffectParameter("T_w", "s", 0.0, 2.0, 0.2),
         ),
-        equation=f"+ c s |s|, s = cos({angle} - Phi_w) - T_w {angle}_dot",
+        equation=f"+ c s |s|, s = cos({angle} - Phi_w) - T_w {speed}",
         story="A steady draught in the room blows against the arm.",
         source="drag of a steady wind, by the square of the stream past the arm; T_w is the arm's length by its speed",
         edit=lambda model, c, Phi_w, T_w: with_torque(model, axis, c * _stream(model, axis, Phi_w, T_w)),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import short, with_friction
+from sim.edits import speed_name, with_friction
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -16,15 +16,15 @@ def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each axis, with the rotor that is there to turn it."""
     for rotor_name, rotor in model.places.rotors.items():
         axis = model.places.pushed_by(rotor_name)
-        entry = model.places.axes[axis]
+        entry, speed = model.places.axes[axis], speed_name(model, axis)
         letter = f"omega_{rotor.letter}" if rotor.letter else str(rotor.variable)
         size = entry.torque_size / rotor.speed_size
         unit = f"{entry.torque_unit} s" if rotor.letter else f"{entry.torque_unit} {_inverse(model, rotor_name)}"
         yield Effect(
             name=f"{axis}.load_friction",
-            depends=f"torque({letter}, sgn {short(entry.angle)}_dot)",
+            depends=f"torque({letter}, sgn {speed})",
             parameters=(EffectParameter("c", unit, 0.0, size, 0.015 * size, 0.0, (0.015 * size, 0.05 * size)),),
-            equation=f"- c |{letter}| sgn({short(entry.angle)}')",
+            equation=f"- c |{letter}| sgn({speed})",
             story="The bearing rubs more the harder the rotor pulls at it.",
             source="Coulomb friction in proportion to the bearing's load",
             holds_at_rest=True,

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, with_output, with_state
+from sim.edits import axis_of, short, speed_name, with_output, with_state
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
 
@@ -33,7 +33,7 @@ def effects(model: Model) -> Iterator[Effect]:
             name=f"{place}.missed_counts",
             depends=f"output({angle}, {x}) of {angle}",
             parameters=(EffectParameter("a", "-", 0.0, 0.5, 0.02, 0.0),),
-            equation=f"y = angle - a m, m' = |{x}|/{largest:g} {angle}'",
+            equation=f"y = angle - a m, m' = |{x}|/{largest:g} {speed_name(model, axis)}",
             story="The motor's current disturbs the encoder beside it: the harder the rotor works, the more counts are missed.",
             source="interference of a driver's switching with an encoder's edges",
             edit=lambda model, a, axis=axis, share=share: _edit(model, a, axis, share),

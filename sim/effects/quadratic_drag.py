@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, with_torque
+from sim.edits import axis_of, speed_name, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.prior import COMMON, one_way
@@ -16,10 +16,10 @@ from sim.prior import COMMON, one_way
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each axis."""
     for axis, entry in model.places.axes.items():
-        size, angle = entry.torque_size / entry.speed_size**2, short(entry.angle)
+        size, speed = entry.torque_size / entry.speed_size**2, speed_name(model, axis)
         yield Effect(
             name=f"{axis}.quadratic_drag",
-            depends=f"torque({angle}_dot)",
+            depends=f"torque({speed})",
             parameters=(
                 EffectParameter(
                     "c",
@@ -31,7 +31,7 @@ def effects(model: Model) -> Iterator[Effect]:
                     unlikely=one_way("air brakes"),
                 ),
             ),
-            equation=f"- c |{angle}'| {angle}'",
+            equation=f"- c |{speed}| {speed}",
             story="The air resists the motion, four times as much at twice the speed.",
             source="drag of a bluff body",
             prior=COMMON,

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, with_friction
+from sim.edits import axis_of, speed_name, with_friction
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.prior import NOTHING_NEW, Prior, Unlikely
@@ -21,24 +21,24 @@ PRIOR = Prior(-0.8, "its shapes are many, and dry friction that does not fall is
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each axis."""
     for axis, entry in model.places.axes.items():
-        size, speed, angle = entry.torque_size, entry.speed_size, short(entry.angle)
+        size, usual, speed = entry.torque_size, entry.speed_size, speed_name(model, axis)
         yield Effect(
             name=f"{axis}.stribeck",
-            depends=f"torque({angle}_dot)",
+            depends=f"torque({speed})",
             parameters=(
                 EffectParameter("b_s", entry.torque_unit, 0.0, size, 0.01 * size, 0.0, (0.01 * size, 0.05 * size)),
                 EffectParameter(
                     "v_s",
                     f"{entry.length_unit} s^-1",
-                    0.005 * speed,
-                    2.0 * speed,
-                    0.08 * speed,
-                    starts=(0.03 * speed, 0.1 * speed, 0.3 * speed),
-                    unlikely=Unlikely(NOTHING_NEW, "it falls beyond usual motion: dry friction", above=0.5 * speed),
+                    0.005 * usual,
+                    2.0 * usual,
+                    0.08 * usual,
+                    starts=(0.03 * usual, 0.1 * usual, 0.3 * usual),
+                    unlikely=Unlikely(NOTHING_NEW, "it falls beyond usual motion: dry friction", above=0.5 * usual),
                 ),
                 EffectParameter("e", "1", 0.0, 20.0, 0.0, starts=(0.0, 3.0), refining=True),
             ),
-            equation=f"- b_s exp(-x^2 (1 + e)/(1 + e x)) sgn({angle}'), x = |{angle}'|/v_s",
+            equation=f"- b_s exp(-x^2 (1 + e)/(1 + e x)) sgn({speed}), x = |{speed}|/v_s",
             story="The grease holds a resting bearing more firmly than a turning one: it breaks loose with a jerk.",
             source="Armstrong, Dupont and Canudas de Wit, Automatica 30(7), 1994",
             prior=PRIOR,

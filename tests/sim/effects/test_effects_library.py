@@ -1,14 +1,18 @@
 """The library of effects is whole and consistent: the contract's table, places, bounds, twins, words."""
 
+from pathlib import Path
+
 import pytest
 import sympy
 
 from records.plant import load_plant
 from records.text.units import dimension
+from sim.bind import bind
 from sim.composition.build import model_with
 from sim.effects import effects_for
 from sim.model import Model
 from sim.plants import MODELS
+from tests.own_plants import WHEEL
 from tests.sim.conftest import PLANTS
 from tests.soak import sampled
 
@@ -165,3 +169,11 @@ def test_what_arrives_of_an_input_is_known_to_be_real(model: Model) -> None:
         if effect.applied is not None:
             for expression in effect.applied(*effect.symbols).values():
                 assert sympy.sympify(expression).is_extended_real, effect.name
+
+
+def test_an_axis_without_a_position_is_told_by_its_own_speed(tmp_path: Path) -> None:
+    """A wheel's state is omega_rad_s: no text of an effect there speaks of a change of omega."""
+    effects = effects_for(bind(load_plant(WHEEL.write(tmp_path, "wheel"))).model)
+    assert effects["arm.coulomb"].depends == "torque(sgn omega)"
+    assert effects["arm.quadratic_drag"].depends == "torque(omega)"
+    assert not any("omega_dot" in f"{effect.depends} {effect.equation}" for effect in effects.values())
