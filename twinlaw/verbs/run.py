@@ -19,13 +19,13 @@ from twinlaw.pages.page import page_text
 from twinlaw.pages.quality import quality_told
 from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design import design_facts, design_heading, design_rows
+from twinlaw.pages.run.flight import ChainFlight
 from twinlaw.pages.run.report import run_page
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, left_sentence, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.causes import cause
 from twinlaw.workflows.chain.designing import Designed, design_controller, poles_of, roll_off_trade
-from twinlaw.workflows.chain.flying import ChainFlight
 from twinlaw.workflows.chain.verifying import demand, verify_table
 
 
@@ -68,10 +68,8 @@ def run(chosen: argparse.Namespace) -> int:
         designed.report,
         verification,
         image.sizes,
-        flight.log,
-        flight.tracking,
+        flight,
         why,
-        flight.counters,
         roll_off_trade(designed),
     )
     write_atomic(out / "report.html", page_text(page))

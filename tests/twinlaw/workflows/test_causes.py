@@ -11,10 +11,11 @@ from sim.activity import Activity
 from sim.tracking import Tracking
 from tests.own_plants import SUSPENSION
 from tests.twinlaw.workflows.test_flying import DESIGN
+from twinlaw.pages.run.flight import ChainFlight
 from twinlaw.workflows.chain import causes
 from twinlaw.workflows.chain.causes import cause
 from twinlaw.workflows.chain.designing import design_controller
-from twinlaw.workflows.chain.flying import ChainFlight, fly_host
+from twinlaw.workflows.chain.flying import fly_host
 
 
 def _flown(steady_m: float) -> tuple[Tracking, ...]:

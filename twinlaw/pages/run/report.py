@@ -13,13 +13,13 @@ from records.quality import Colour, flag
 from records.text.units import label, shown, unit_of
 from records.verification import Verification
 from sim.columns import reference_name
-from sim.tracking import Tracking
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.plots import BLUE, GREEN, ORANGE, RED, Curve, Panel, stack
 from twinlaw.pages.quality import quality_section, quality_told
 from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design_page import design_sections
+from twinlaw.pages.run.flight import ChainFlight
 from twinlaw.pages.run.roll_off import roll_off_section
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_rows
 
@@ -47,15 +47,13 @@ def run_page(
     report: DesignReport,
     verification: Verification,
     sizes: ImageSizes,
-    log: RunLog,
-    tracking: Sequence[Tracking],
+    flight: ChainFlight,
     cause: str,
-    counters: Mapping[str, int],
     trade: Sequence[TradePoint],
 ) -> Page:
     """The whole page: the flight of the image, its verification, and the design; `cause` is why it is not green, "" where it is."""
     failures = verification.failures
-    quality = flight_quality(tracking, [flag(text, Colour.RED) for text in failures])
+    quality = flight_quality(flight.tracking, [flag(text, Colour.RED) for text in failures])
     verdict = "Every check holds, and the firmware image has flown." if not failures else "; ".join(failures)
     return Page(
         title=f"{plant}: from its equations to a flight of the firmware",
@@ -64,7 +62,7 @@ def run_page(
         why=quality_told(quality, cause),
         facts=(("Controller table", verification.table_digest),),
         sections=(
-            _flight(log, report.loops, tracking, counters),
+            _flight(flight, report.loops),
             _verified(verification, sizes),
             *design_sections(report),
             *roll_off_section(trade),
@@ -103,7 +101,8 @@ def _told(column: str, names: Mapping[str, str]) -> str:
     return names.get(column, label(column).partition(" [")[0])
 
 
-def _flight(log: RunLog, loops: Sequence[Loop], tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
+def _flight(flight: ChainFlight, loops: Sequence[Loop]) -> Section:
+    counters, tracking = flight.counters, flight.tracking
     faults = [f"{name} {count}" for name, count in counters.items() if count and name != "frames_accepted"]
     return Section(
         "Flight",
@@ -115,7 +114,7 @@ def _flight(log: RunLog, loops: Sequence[Loop], tracking: Sequence[Tracking], co
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
         (Table(tracking_rows(tracking), TRACKING_HEADING),),
-        (flight_plot(log, loops),),
+        (flight_plot(flight.log, loops),),
     )
 
 

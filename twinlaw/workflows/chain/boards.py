@@ -19,8 +19,9 @@ from sim.bind import BoundPlant
 from sim.loop import Wired, fly
 from sim.wiring import wiring
 from twinlaw.cli.console import stage, tally
+from twinlaw.pages.run.flight import ChainFlight
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
-from twinlaw.workflows.chain.flying import ChainFlight, chain_flight, flight_of
+from twinlaw.workflows.chain.flying import chain_flight, flight_of
 from verification.equality import compare
 from verification.host_law import HostLaw
 from verification.stateless import Stateless

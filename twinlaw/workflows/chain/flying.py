@@ -1,7 +1,7 @@
 """Flights of the simulated plant under a table's law, in double precision or as generated."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,20 +20,12 @@ from sim.loop import Wired, fly, fly_law, steps_a_sample
 from sim.manoeuvres import Manoeuvre, flight, steps, stir
 from sim.simulate import simulate
 from sim.substeps import MOST_SUBSTEPS, fastest_rad_s, steps_a_stretch
-from sim.tracking import Tracking, tracking
+from sim.tracking import tracking
 from sim.wiring import wiring
 from twinlaw.cli.console import stage
+from twinlaw.pages.run.flight import ChainFlight
 from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
-
-
-@dataclass(frozen=True)
-class ChainFlight:
-    """A flight's log, how well it followed its references, and the counters of the board's line (none without a board)."""
-
-    log: RunLog
-    tracking: tuple[Tracking, ...]
-    counters: Mapping[str, int]
 
 
 def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:

@@ -1,0 +1,16 @@
+"""What a flight of the chain leaves for its page."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from records.log import RunLog
+from sim.tracking import Tracking
+
+
+@dataclass(frozen=True)
+class ChainFlight:
+    """A flight's log, how well it followed its references, and the counters of the board's line (none without a board)."""
+
+    log: RunLog
+    tracking: tuple[Tracking, ...]
+    counters: Mapping[str, int]
