@@ -15,6 +15,7 @@ from pathlib import Path
 from records.diagnosis import diagnosis_text
 from records.errors import BadInput
 from records.files import write_atomic
+from sim.added_effects import library
 from twinlaw.cli import console, options
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import moved_most
@@ -22,7 +23,7 @@ from twinlaw.pages.diagnose.summary import summary_text
 from twinlaw.pages.diagnose.why import why_text
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.diagnose.each import HEADING, answers, facts, rows
-from twinlaw.workflows.diagnose.files import widths, writable
+from twinlaw.workflows.diagnose.files import writable
 from twinlaw.workflows.diagnose.questions import questions
 from twinlaw.workflows.diagnose.together import diagnose_logs
 
@@ -57,7 +58,7 @@ def run(chosen: argparse.Namespace) -> int:
     elif chosen.why:
         told = why_text(result.diagnosis)
     else:
-        told = summary_text(result.diagnosis, moved_most(result), widths(result))
+        told = summary_text(result.diagnosis, moved_most(result), library(result.case.library.bound))
     print(told, end="")
     return 0
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from records.diagnosis import Diagnosis, Hypothesis
+from sim.effect import Effect
 from twinlaw.pages.diagnose.retune import Moved, moved_in_words, parameters_alone
 from twinlaw.pages.diagnose.words import class_in_words, listed, percent, sized, words
 from twinlaw.pages.page import Section, Table
@@ -10,12 +11,10 @@ from twinlaw.pages.page import Section, Table
 ALWAYS, SELDOM = 3, 0.01  # the first few causes are always shown, further ones from this probability
 
 
-def causes_section(
-    diagnosis: Diagnosis, stories: Mapping[str, str], moved: Sequence[Moved], widths: Mapping[str, float]
-) -> Section | None:
+def causes_section(diagnosis: Diagnosis, effects: Mapping[str, Effect], moved: Sequence[Moved]) -> Section | None:
     if not diagnosis.effects and not diagnosis.unknown.probability:
         return None
-    told = [f"{words(name).capitalize()}: {stories[name]}" for name in diagnosis.found if name in stories]
+    told = [f"{words(name).capitalize()}: {effects[name].story}" for name in diagnosis.found if name in effects]
     told += [
         f"These data cannot tell {words(h.effect)} from {listed([words(name) for name in h.ambiguous_with])}."
         for h in diagnosis.effects[:1]
@@ -30,7 +29,7 @@ def causes_section(
         )
     shown_ones = [h for place, h in enumerate(diagnosis.effects) if place < ALWAYS or h.probability > SELDOM]
     ranked = [
-        (h.probability, _cause_rows(h, set(h.effect.split(" + ")) == set(diagnosis.found), widths)) for h in shown_ones
+        (h.probability, _cause_rows(h, set(h.effect.split(" + ")) == set(diagnosis.found), effects)) for h in shown_ones
     ]
     if retuned > SELDOM:
         # Beside an effect other numbers move than without it.
@@ -49,10 +48,10 @@ def causes_section(
     )
 
 
-def _cause_rows(hypothesis: Hypothesis, found: bool, widths: Mapping[str, float]) -> list[tuple[str, ...]]:
+def _cause_rows(hypothesis: Hypothesis, found: bool, effects: Mapping[str, Effect]) -> list[tuple[str, ...]]:
     """A row for each effect, those that it is joint with below the first."""
     rows: list[tuple[str, ...]] = []
-    for place, (name, class_, size) in enumerate(sized(hypothesis, widths)):
+    for place, (name, class_, size) in enumerate(sized(hypothesis, effects)):
         first = place == 0
         rows.append(
             (

@@ -1,10 +1,12 @@
 """The report of `twinlaw diagnose`: verdict, guilty block, shrinkage, maps, causes, what else it could be, and what to record next."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from diagnosis.explain.curve import Shape
 from diagnosis.explain.sentences import sentence, unseen_effects
 from records.diagnosis import Diagnosis
+from sim.added_effects import library
+from sim.bind import BoundPlant
 from sim.model import Model
 from twinlaw.pages.block_diagram import block_diagram
 from twinlaw.pages.diagnose.answers import answers_section
@@ -24,23 +26,20 @@ UNSEEN, HIDDEN = "unseen", "hidden"  # kinds of notes
 
 
 def diagnosis_page(
-    plant: str,
+    bound: BoundPlant,
     diagnosis: Diagnosis,
-    model: Model,
-    stories: Mapping[str, str],
     predicted: Sequence[Predicted],
     logs: Sequence[str],
     shape: Shape | None = None,
     moved: Sequence[Moved] = (),
-    widths: Mapping[str, float] = {},
 ) -> Page:
-    """The whole page; `stories` gives one plain sentence for each effect, `logs` the names of the files that were diagnosed, `shape` the
-    curve of an effect without a name, `moved` the plant's own numbers that moved most, `widths` see `sized`."""
+    """The whole page; `logs` are the names of the files that were diagnosed, `shape` the curve of an effect without a name, `moved` the
+    plant's own numbers that moved most."""
     firmware = Section("Firmware", (firmware_in_words(diagnosis.firmware, diagnosis.note_records),))
     amiss = differs(diagnosis.firmware)
     quality = diagnosis_quality(diagnosis)
     sections: list[Section | None] = [firmware] if amiss else []
-    sections += [_place(diagnosis, model), causes_section(diagnosis, stories, moved, widths)]
+    sections += [_place(diagnosis, bound.model), causes_section(diagnosis, library(bound), moved)]
     if shape is not None:
         sections.append(shape_section(shape, words(diagnosis.unknown.place or "rig"), diagnosis.unknown.form))
     sections.append(_next(diagnosis))
@@ -60,7 +59,7 @@ def diagnosis_page(
         quality_section(quality),
     ]
     return Page(
-        title=f"{plant}: where the model and the rig part",
+        title=f"{bound.plant.name}: where the model and the rig part",
         verdict=verdict_sentence(diagnosis),
         colour=quality.colour,
         why=quality_sentence(quality),

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from records.diagnosis import Diagnosis
+from sim.effect import Effect
 from twinlaw.cli import console
 from twinlaw.pages.diagnose.answers import surest_answer
 from twinlaw.pages.diagnose.firmware import beside_firmware, firmware_behind_the_first
@@ -22,13 +23,13 @@ from twinlaw.pages.quality import quality_sentence
 MOST_TOLD = 5
 
 
-def summary_text(diagnosis: Diagnosis, moved: Sequence[Moved] = (), widths: Mapping[str, float] = {}) -> str:
+def summary_text(diagnosis: Diagnosis, moved: Sequence[Moved] = (), effects: Mapping[str, Effect] = {}) -> str:
     """The verdict in a sentence, ranked effects, places, shrinkage, firmware, notes; `moved` are the plant's own numbers that moved
-    most, `widths` see `sized`."""
-    return "\n".join(_lines(diagnosis, moved, widths)) + "\n"
+    most, `effects` the plant's library by name."""
+    return "\n".join(_lines(diagnosis, moved, effects)) + "\n"
 
 
-def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> Iterator[str]:
+def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], effects: Mapping[str, Effect]) -> Iterator[str]:
     yield verdict_sentence(diagnosis)
     p = diagnosis.false_alarm_probability
     if p is None:
@@ -38,7 +39,7 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
     else:
         yield f"{diagnosis.verdict}: {alarm_in_words(diagnosis, p)}"
     if diagnosis.verdict == "gap":
-        yield console.table(_rows(diagnosis, moved, widths))
+        yield console.table(_rows(diagnosis, moved, effects))
     if diagnosis.unknown.form:
         yield f"sparse regression suggests: {diagnosis.unknown.form}"
     if diagnosis.places and diagnosis.verdict == "gap":
@@ -57,13 +58,13 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
     yield quality_sentence(diagnosis_quality(diagnosis))
 
 
-def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> list[tuple[str, str, str]]:
+def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], effects: Mapping[str, Effect]) -> list[tuple[str, str, str]]:
     """All that may explain the gap, the most probable first, and last that nothing does that is known."""
     ranked = []
     for h in diagnosis.effects[:MOST_TOLD]:
         lines = [
             (name if place == 0 else f"  with {name}", f"{h.probability:.3f}" if place == 0 else "", size)
-            for place, (name, _, size) in enumerate(sized(h, widths, " "))
+            for place, (name, _, size) in enumerate(sized(h, effects, " "))
         ]
         ranked.append((h.probability, lines))
     alone = parameters_alone(diagnosis)

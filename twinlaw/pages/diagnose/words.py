@@ -13,6 +13,7 @@ from records.text.functional_class import Dependence, parse_class
 from records.text.uncertain import with_sd
 from records.text.units import label, plain_unit, unit_of
 from sim.added_effects import every_effect
+from sim.effect import Effect
 
 # By the unit at the end of a name: how a person reads it, where not in that unit.
 _SHOWN = {
@@ -124,8 +125,8 @@ def _signal(depends: Dependence) -> str:
     return _SIGNALS.get(name, name)
 
 
-def sized(hypothesis: Hypothesis, widths: Mapping[str, float], equals: str = " = ") -> list[tuple[str, str, str]]:
-    """Each effect of a hypothesis once: its name, its class, and its parameters; `widths` between the bounds by "place.effect.symbol"."""
+def sized(hypothesis: Hypothesis, effects: Mapping[str, Effect], equals: str = " = ") -> list[tuple[str, str, str]]:
+    """Each effect of a hypothesis once: its name, its class, and its parameters; `effects` are the plant's library by name."""
     names, classes = hypothesis.effect.split(" + "), hypothesis.class_.split(" + ")
     classes += [""] * (len(names) - len(classes))
     joint = len(names) > 1
@@ -138,12 +139,18 @@ def sized(hypothesis: Hypothesis, widths: Mapping[str, float], equals: str = " =
         }
         sizes = [
             f"{symbol} not told by these data"  # it might as well be any between its bounds
-            if entry.sd > widths.get(f"{name}.{symbol}", math.inf)
+            if entry.sd > _width(effects, name, symbol)
             else f"{symbol}{equals}{with_sd(entry.value, entry.sd)} {plain_unit(entry.unit)}".strip()
             for symbol, entry in own.items()
         ]
         lines.append((name, class_, ", ".join(sizes)))
     return lines
+
+
+def _width(effects: Mapping[str, Effect], name: str, symbol: str) -> float:
+    """How far apart the bounds of an effect's parameter are; without end where the library has none."""
+    parameter = effects[name].parameter.get(symbol) if name in effects else None
+    return math.inf if parameter is None else parameter.upper - parameter.lower
 
 
 def misfits(diagnosis: Diagnosis) -> dict[str, float]:

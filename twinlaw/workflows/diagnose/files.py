@@ -15,7 +15,6 @@ from records.files import demand_writable
 from records.plant import plant_files
 from records.text.log_csv import rows_text
 from records.text.units import unit_suffix
-from sim.added_effects import library
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import moved_most
 from twinlaw.pages.page import Page, page_text
@@ -66,27 +65,7 @@ def _page(result: Result, logs: Sequence[str]) -> Page:
         )
         for flight in _by_log(result.predicted)
     ]
-    stories = {name: effect.story for name, effect in library(bound).items()}
-    return report.diagnosis_page(
-        bound.plant.name,
-        result.diagnosis,
-        bound.model,
-        stories,
-        curves,
-        logs,
-        result.shape,
-        moved_most(result),
-        widths(result),
-    )
-
-
-def widths(result: Result) -> Mapping[str, float]:
-    """How far apart the bounds of every parameter of the library are, by "place.effect.symbol"."""
-    return {
-        f"{name}.{symbol}": parameter.upper - parameter.lower
-        for name, effect in library(result.case.library.bound).items()
-        for symbol, parameter in effect.parameter.items()
-    }
+    return report.diagnosis_page(bound, result.diagnosis, curves, logs, result.shape, moved_most(result))
 
 
 def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:

@@ -4,7 +4,8 @@ import re
 from dataclasses import replace
 
 from records.diagnosis import Estimate, Hypothesis
-from tests.twinlaw.pages.diagnose.told import WORDS, text_of
+from sim.added_effects import library
+from tests.twinlaw.pages.diagnose.told import CE150, WORDS, text_of
 from twinlaw.pages.diagnose.summary import summary_text
 
 
@@ -36,6 +37,8 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
         0.9,
         {"d": Estimate(0.01, 0.001, "V"), "w": Estimate(6e-9, 60.0, "1"), "n": Estimate(19.0, 0.1, "rad rad^-1")},
     )
-    told, widths = replace(WORDS, effects=(dead,)), {"tail_input.deadzone.w": 3.0, "tail_input.deadzone.d": 0.4}
-    assert "d = 0.0100 ± 0.0010 V, w not told by these data, n = 19.00 ± 0.10 per rad" in text_of(told, widths=widths)
-    assert "d 0.0100 ± 0.0010 V, w not told by these data, n 19.00 ± 0.10 per rad" in summary_text(told, (), widths)
+    told = replace(WORDS, effects=(dead,))
+    assert "d = 0.0100 ± 0.0010 V, w not told by these data, n = 19.00 ± 0.10 per rad" in text_of(told)
+    assert "d 0.0100 ± 0.0010 V, w not told by these data, n 19.00 ± 0.10 per rad" in summary_text(
+        told, (), library(CE150)
+    )

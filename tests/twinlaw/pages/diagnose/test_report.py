@@ -22,7 +22,7 @@ def test_the_page_says_all_that_the_record_holds(whole_page: str) -> None:
         "81 % of the gap",
         "93.0 %",
         "k = 0.003120 ± 0.000040 N m/rad",
-        "pulls the arm back",
+        "pull it back to one angle",
         "cannot tell cable spring of the azimuth from tilt of the azimuth",
     )
     told += (

@@ -29,7 +29,7 @@ from twinlaw.pages.page import page_text
 ROOT = Path(__file__).resolve().parents[4]
 
 
-STORIES = {"azimuth.cable_spring": "the cable to the board pulls the arm back."}
+CE150 = bind(load_plant(ROOT / "plants" / "ce150.toml"))
 
 
 SHRINKAGE = Shrinkage(
@@ -91,18 +91,7 @@ def predicted(rows: int = 3000) -> Predicted:
 def text_of(
     diagnosis: Diagnosis,
     moved: tuple[Moved, ...] = (),
-    widths: dict[str, float] | None = None,
     logs: tuple[Predicted, ...] = (),
 ) -> str:
-    model = bind(load_plant(ROOT / "plants" / "ce150.toml")).model
-    page = diagnosis_page(
-        "ce150",
-        diagnosis,
-        model,
-        STORIES,
-        logs,
-        ("a.csv", "b.csv"),
-        moved=moved,
-        widths=widths or {},
-    )
+    page = diagnosis_page(CE150, diagnosis, logs, ("a.csv", "b.csv"), moved=moved)
     return re.sub(r"\s+", " ", page_text(page))
