@@ -223,7 +223,7 @@ def test_noise_is_sought_beside_what_it_could_bring_near_as_parameters_come_back
 
 
 def test_where_the_likeliest_takes_none_noise_is_sought_beside_no_other() -> None:
-    # Truth: a lag of the drive and no noise with a memory. Beside what lacks the lag noise could take its part, by what innovations foretell.
+    # Truth: a lag of the drive and no noise with a memory. Beside what lacks the lag noise could take its part, as innovations foretell.
     case = lagging()
     drive, pull = supposed(case, LAG), supposed(case, {"arm.offset_force": {"offset": 1e-5}})
     runs = [passes(case, entry.fit.hypothesis) for entry in (pull, drive)]
