@@ -1,9 +1,8 @@
 """A plant from run logs: short windows find the way from a bad start; then the whole logs, or windows where the model lacks something."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,39 +29,45 @@ COARSE_SETTLED = 10.0
 WINDOW_ROWS = (40, 160, 640)
 
 
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a fit of logs: windows of `window_s` (inf: each log whole; None: as the logs need), coefficients' `limits`, what is
+    known `before`, a search over the whole range first (`wanted`), `offsets`, a constant on each input, the trim of a real rig, to be
+    estimated too, and who is `told` of better parameters as soon as there are any."""
+
+    window_s: float | None = None
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    before: Belief = NOTHING
+    wanted: Search | None = None
+    offsets: bool = False
+    told: Told | None = None
+
+
+NOTHING_MORE = Asked()
+
+
 def fits_of_logs(
-    bound: BoundPlant,
-    logs: Mapping[str, RunLog],
-    names: Sequence[str],
-    *,
-    window_s: float | None = None,
-    limits: Mapping[str, tuple[float, float]] | None = None,
-    before: Belief = NOTHING,
-    wanted: Search | None = None,
-    offsets: bool = False,
-    told: Told | None = None,
+    bound: BoundPlant, logs: Mapping[str, RunLog], names: Sequence[str], asked: Asked = NOTHING_MORE
 ) -> Iterator[Estimate]:
-    """The coefficients `names` from all logs at once, by output errors over windows of `window_s` (inf: each log whole).
+    """The coefficients `names` from all logs at once, by output errors over windows.
 
     What shows only in an output that no log has a reading of is to be left out (`identification.model.shown`): it would be read off a
     guess. By default each log whole, where that leaves no more than the sensors do; else one fit after the other over longer and longer
-    windows, of which `best_fit` chooses. `wanted` asks for a search over the whole range first; `offsets` adds a constant to each input,
-    the trim of a real rig, to what is estimated; `told` hears of better parameters as soon as there are any. Raises BadInput for an
-    unknown coefficient or a start outside its limits.
+    windows, of which `best_fit` chooses. Raises BadInput for an unknown coefficient or a start outside its limits.
     """
     coarse = _short_windows(bound, logs)
-    ranges = ranges_of_logs(bound, logs, coarse, (*before.names, *names), limits or {}, offsets)
-    names = (*names, *(offset_names(bound.model) if offsets else ()))
-    first, begun, searched = _coarse(coarse, names, ranges, before, wanted, told)
-    reached = dict(zip(widened(before, names, {})[0], first.theta.tolist(), strict=True))
+    ranges = ranges_of_logs(bound, logs, coarse, (*asked.before.names, *names), asked.limits, asked.offsets)
+    names = (*names, *(offset_names(bound.model) if asked.offsets else ()))
+    first, begun, searched = _coarse(coarse, names, ranges, asked)
+    reached = dict(zip(widened(asked.before, names, {})[0], first.theta.tolist(), strict=True))
     start = {name: reached[name] for name in names}
-    from_there = partial(_fitted, bound, logs, coarse, ranges, before, told)
+    from_there = partial(_fitted, bound, logs, coarse, ranges, asked)
 
     def fitted(length_s: float, start: Mapping[str, float]) -> Estimate:
         return replace(from_there(length_s, start), start=begun, searched=searched)
 
-    if window_s is not None:
-        yield fitted(window_s, start)
+    if asked.window_s is not None:
+        yield fitted(asked.window_s, start)
         return
     if may_explain(first) and nothing_left(whole := fitted(np.inf, start)):
         yield whole
@@ -79,8 +84,7 @@ def _fitted(
     logs: Mapping[str, RunLog],
     coarse: Sequence[Run],
     ranges: dict[str, Range],
-    before: Belief,
-    told: Told | None,
+    asked: Asked,
     length_s: float,
     start: Mapping[str, float],
 ) -> Estimate:
@@ -90,13 +94,15 @@ def _fitted(
         replace(run_of(bound, log, name, length_s), substeps=short.substeps)
         for short, (name, log) in zip(coarse, logs.items(), strict=True)
     )
-    held = with_best_starts(runs, *widened(before, tuple(start), start))
-    return estimate(held.runs, tuple(start), closer, before, told)
+    held = with_best_starts(runs, *widened(asked.before, tuple(start), start))
+    return estimate(held.runs, tuple(start), closer, asked.before, asked.told)
 
 
-def identify_logs(bound: BoundPlant, logs: Mapping[str, RunLog], names: Sequence[str], **wishes: Any) -> Estimate:
-    """The best of `fits_of_logs`, which see for the wishes."""
-    return best_fit(list(fits_of_logs(bound, logs, names, **wishes)))
+def identify_logs(
+    bound: BoundPlant, logs: Mapping[str, RunLog], names: Sequence[str], asked: Asked = NOTHING_MORE
+) -> Estimate:
+    """The best of `fits_of_logs`."""
+    return best_fit(list(fits_of_logs(bound, logs, names, asked)))
 
 
 def _short_windows(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Run, ...]:
@@ -112,11 +118,11 @@ def _coarse(
     runs: tuple[Run, ...],
     names: Sequence[str],
     ranges: Mapping[str, Range],
-    before: Belief,
-    wanted: Search | None,
-    told: Told | None,
+    asked: Asked,
 ) -> tuple[Point, Mapping[str, float], tuple[Searched, ...]]:
     """A start for the fine fit, where it began itself, and what was searched for that."""
-    problem, searched = searched_for(problem_of(runs, tuple(names), ranges, before), names, wanted, told)
-    tell = by_name(problem.names, told)
+    problem, searched = searched_for(
+        problem_of(runs, tuple(names), ranges, asked.before), names, asked.wanted, asked.told
+    )
+    tell = by_name(problem.names, asked.told)
     return solve(problem, lambda better: tell(better.theta), COARSE_SETTLED), starts_of(problem), searched

@@ -11,7 +11,7 @@ from identification.runs.log_run import run_of
 from identification.search.methods import Search
 from identification.stages.best_fit import apart_sd, best_fit, nothing_left
 from identification.stages.estimate import interval_factor
-from identification.stages.logs import identify_logs
+from identification.stages.logs import Asked, identify_logs
 from recordings.datasets.files import datasets_folder
 from recordings.datasets.library import import_record
 from records.correlation import Correlation
@@ -94,7 +94,9 @@ def test_jittered_times_and_lost_samples_do_no_harm(bound, flown):
 
 def test_a_whole_log_that_claims_more_than_numbers_hold_is_not_believed(bound, flown):
     """Truth: white residuals alone are what a right model leaves; an sd of 1e-15 of its value is what grown slopes make of rounding."""
-    found = replace(identify_logs(bound, {"flight": cut(flown, 64.0, 4.0)}, ("b_vE",), window_s=0.4), residuals=())
+    found = replace(
+        identify_logs(bound, {"flight": cut(flown, 64.0, 4.0)}, ("b_vE",), Asked(window_s=0.4)), residuals=()
+    )
     belief = found.belief
     assert nothing_left(found)
     surer = replace(belief, covariance=(1e-15 * belief.mean / belief.sd) ** 2 * belief.covariance)
@@ -110,14 +112,14 @@ def test_an_axis_that_was_locked_stands_still_at_its_readings(bound):
     log = RunLog(log_columns(bound.model), 0.01, "open", t_s, u, run.y, locked=("azimuth",))
     seen = run_of(bound, log, "log", np.inf)
     assert seen.channels == ("psi_rad",)
-    found = identify_logs(off(bound, {"J_E": 1.2}), {"log": log}, ("J_E",), window_s=2.0)
+    found = identify_logs(off(bound, {"J_E": 1.2}), {"log": log}, ("J_E",), Asked(window_s=2.0))
     assert found.belief.value("J_E") == pytest.approx(bound.parameter("J_E"), rel=5e-3)
 
 
 def test_a_search_finds_the_way_from_the_edge_of_the_range(bound, flown):
     """Inertia and damping four times off."""
     start, log = off(bound, {"J_A": 4.0, "b_vA": 0.25}), {"flight": cut(flown, 60.0, 12.0)}
-    found = identify_logs(start, log, ("J_A", "b_vA"), window_s=1.0, wanted=Search("evolution"))
+    found = identify_logs(start, log, ("J_A", "b_vA"), Asked(window_s=1.0, wanted=Search("evolution")))
     assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
 
 
@@ -154,7 +156,7 @@ def test_a_log_that_begins_in_flight_is_used_once_its_rotors_start_no_longer_sho
     run = run_of(bound, log, "log", 2.0)
     begun_s = run.t_s[run.begins[0]] - run.t_s[0]
     assert 0.5 < begun_s < 5.0
-    found = identify_logs(off(bound, {"J_A": 1.2}), {"log": log}, ("J_A",), window_s=1.0)
+    found = identify_logs(off(bound, {"J_A": 1.2}), {"log": log}, ("J_A",), Asked(window_s=1.0))
     assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.01)
 
 
@@ -177,7 +179,9 @@ def test_intervals_from_three_seconds_hold_though_the_rotors_turned_before(bound
 def test_an_axis_at_rest_does_not_leave_the_choice_to_the_shortest_windows(bound, flown):
     """From 46 s on the azimuth rests, and nothing of it is explained: J_E and b_vE are within 3 sd, over windows that tell more."""
     log = {"log": cut(flown, 46.0, 8.0)}
-    found = best_fit([identify_logs(bound, log, ("J_E", "b_vE"), window_s=length_s) for length_s in (0.4, 1.6, 6.4)])
+    found = best_fit(
+        [identify_logs(bound, log, ("J_E", "b_vE"), Asked(window_s=length_s)) for length_s in (0.4, 1.6, 6.4)]
+    )
     assert found.runs[0].begins.size < 20
     assert np.all(np.abs(found.belief.mean - [bound.parameter(name) for name in found.own]) < 3.0 * found.belief.sd)
 

@@ -9,7 +9,7 @@ from identification.runs.driven_start import driven_start
 from identification.runs.log_run import run_of
 from identification.runs.prediction import blocks
 from identification.runs.window_starts import crawling, window_starts
-from identification.stages.logs import identify_logs
+from identification.stages.logs import Asked, identify_logs
 from records.log import RunLog
 from records.plant import load_plant
 from sim.bind import bind
@@ -51,7 +51,7 @@ def test_a_position_that_was_never_read_may_be_anywhere_between_its_stops(bound,
     reach = 2.0 * bound.parameter("Psi_lim")
     np.testing.assert_allclose(run.x0[:, 1], 0.0)
     np.testing.assert_allclose(run.start_sd[:, run.free.index("psi_rad")], reach / np.sqrt(12.0))
-    found = identify_logs(bound, {"log": log}, ("J_A", "b_vA", "b_cA"), window_s=6.0)
+    found = identify_logs(bound, {"log": log}, ("J_A", "b_vA", "b_cA"), Asked(window_s=6.0))
     assert np.all(errors_sd(bound, found) < 3.0)
 
 
@@ -95,7 +95,9 @@ def test_what_stood_long_may_be_setting_out_or_come_to_rest():
 @pytest.mark.parametrize("window_s", [0.4, 1.6])
 def test_a_window_may_begin_while_an_axis_crawls_within_an_encoder_step(bound, flown, window_s):
     """From 42 s on, within 3 sd; where no step in 0.08 s was taken for rest J_E was 8.6 sd off."""
-    found = identify_logs(bound, {"log": cut(flown, 42.0, 8.0)}, ("J_E", "b_vE", "J_A", "b_vA"), window_s=window_s)
+    found = identify_logs(
+        bound, {"log": cut(flown, 42.0, 8.0)}, ("J_E", "b_vE", "J_A", "b_vA"), Asked(window_s=window_s)
+    )
     assert found.runs[0].begins.size > 1
     assert np.all(errors_sd(bound, found) < 3.0)
 
@@ -181,6 +183,6 @@ def test_axes_of_which_only_the_difference_is_measured_start_with_any_speed(tmp_
     u = np.repeat(levels, 80)[:, None]
     log = RunLog(log_columns(bound.model), 0.005, "open", t_s, u, simulate(bound, t_s, np.zeros(4), u).y)
     names = ("m_s", "k_s", "c_s")
-    found = identify_logs(bound, {"log": log}, names, window_s=1.0)
+    found = identify_logs(bound, {"log": log}, names, Asked(window_s=1.0))
     assert np.all(errors_sd(bound, found) < 3.0)
     assert np.all(found.belief.sd < 0.02 * found.belief.mean)

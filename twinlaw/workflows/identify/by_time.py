@@ -14,7 +14,7 @@ from identification.search.methods import Search
 from identification.stages.best_fit import best_fit
 from identification.stages.estimate import Estimate
 from identification.stages.holdout import prediction_tests
-from identification.stages.logs import fits_of_logs
+from identification.stages.logs import Asked, fits_of_logs
 from identification.stages.staged import identify_stage, title
 from records.errors import BadInput
 from records.experiment import Experiment
@@ -83,20 +83,11 @@ def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, do
             "parameters", ", ".join(logs), f"{', '.join(lost)}, which show only in what was not recorded",
             f"a reading of {', '.join(unread(bound.model, logs))}", "record it, or free parameters that show in what was",
         )  # fmt: skip
+    asked = Asked(wishes.window_s, wishes.limits, done.belief, wishes.search, wishes.offsets, so_far.told)
     fits: list[Estimate] = []
     found, so_many = done, f"{len(names)} parameters" + (f", {len(lost)} others held" if lost else "")
     with console.stage(f"{len(logs)} run logs, {so_many}"):
-        for fit in fits_of_logs(
-            bound,
-            logs,
-            names,
-            window_s=wishes.window_s,
-            limits=wishes.limits,
-            before=done.belief,
-            wanted=wishes.search,
-            offsets=wishes.offsets,
-            told=so_far.told,
-        ):
+        for fit in fits_of_logs(bound, logs, names, asked):
             fits.append(fit)
             found = _with_logs(done, ", ".join(logs), best_fit(fits))
             so_far.finished(found)
