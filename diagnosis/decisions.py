@@ -250,10 +250,8 @@ MISSED = Limit(15.0, "nats", "far less likely", "the Quanser arm; seeds 900006 a
 WORTH_REFINING = Limit(
     0.2,
     "share of the best fit's gain",
-    "first fits below are not fitted to their end, free curves that promise less not at all, and axes that yield are not asked for before "
-    "what a search finds: time",
-    "development cases of the sealed generator, seeds 21 and 22; axes that yield: 0.02 at EMPS, whose friction is dry, 0.21 and more on "
-    "spent cases of the second rig",
+    "first fits below are not fitted to their end, free curves that promise less not at all: time",
+    "development cases of the sealed generator, seeds 21 and 22",
 )
 NEAR_BEST = Limit(
     30.0,

@@ -142,13 +142,11 @@ def _told(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit)
 def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     """What explains the gap, with axes that yield near rest where that is part of it; no search where no gap is left then.
 
-    They are asked beside single effects first, as a rig that yields is searched in vain by a plant that sticks: there they must explain
-    a good part of what an effect does, as what a second effect would explain often looks like yielding, and what is then found must
-    still need them.
+    They are asked beside single effects first, as a rig that yields is searched in vain by a plant that sticks. What a second effect would
+    explain often looks like yielding there: what is then found must still need them.
     """
     begun = alone_of(seen)
-    first = begun.best(decisions.ASKED)
-    seen, again = _yielding(seen, first, decisions.WORTH_REFINING * (first[0].evidence - seen.retuned.evidence))
+    seen, again = _yielding(seen, begun.best(decisions.ASKED))
     if again is not None:
         further = _searched(again)
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):
@@ -162,11 +160,11 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     return (again, further) if best.evidence > found.fitted[0].evidence else (seen, found)
 
 
-def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.0) -> tuple[Seen, Seen | None]:
+def _yielding(seen: Seen, found: Sequence[FittedHypothesis]) -> tuple[Seen, Seen | None]:
     """The same with the rules asked, and all anew with axes that yield near rest, where that explains the logs better beside one of those
     found; else None."""
     asked = list(found) if seen.retuned in found else [*found, seen.retuned]
-    found_there = yielding(seen.case, asked, further)
+    found_there = yielding(seen.case, asked)
     is_anew, rules = changes_names(found_there, found[0], seen.retuned)
     seen = seen.because(*found_there.decisions, *rules)
     if not is_anew:

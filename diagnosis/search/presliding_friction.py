@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.decisions import held_against
+from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import axis_noise, with_process_noise
@@ -32,15 +32,13 @@ class Yielding:
     decisions: tuple[Decision, ...]
 
 
-def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0) -> Yielding:
+def yielding(case: Case, found: Sequence[FittedHypothesis]) -> Yielding:
     """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best first.
 
-    They must then be TAKEN_IN and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
-    something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
-    for it.
+    They must then be TAKEN_IN nats likelier than the best of those. It is asked beside them, as under a model that lacks something else an
+    axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up for it.
     """
-    needed_nats = decisions.TAKEN_IN + further
-    best, likeliest_fit, rules = found[0].evidence + needed_nats, None, list[Decision]()
+    best, likeliest_fit, rules = found[0].evidence + decisions.TAKEN_IN, None, list[Decision]()
     promised = [(_promised(case, fitted.fit), fitted) for fitted in found]
     promising = sorted(
         (fitted.evidence + gain, place)
@@ -57,7 +55,7 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
         if refitted is None:
             continue
         ended, explained = refitted.fit, refitted.evidence
-        rules.append(_rule(fitted, explained - found[0].evidence, needed_nats))
+        rules.append(_rule(fitted, explained - found[0].evidence))
         if explained > best:
             best, likeliest_fit = explained, ended
             beside = fitted.fit.hypothesis.effects
@@ -70,9 +68,9 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
     return Yielding(known, None if there is None else as_fitted(known, there), tuple(rules))
 
 
-def _rule(beside: FittedHypothesis, gain: float, limit: float) -> Decision:
+def _rule(beside: FittedHypothesis, gain: float) -> Decision:
     of = " + ".join(beside.effects) or "plant"
-    return held_against("axes_yield", of, gain, limit, "nats", "axes yield" if gain > limit else "axes stick")
+    return decided("axes_yield", of, gain, decisions.TAKEN_IN, "axes yield" if gain > decisions.TAKEN_IN else "axes stick")
 
 
 def changes_names(
