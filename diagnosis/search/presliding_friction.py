@@ -70,7 +70,9 @@ def yielding(case: Case, found: Sequence[FittedHypothesis]) -> Yielding:
 
 def _rule(beside: FittedHypothesis, gain: float) -> Decision:
     of = " + ".join(beside.effects) or "plant"
-    return decided("axes_yield", of, gain, decisions.TAKEN_IN, "axes yield" if gain > decisions.TAKEN_IN else "axes stick")
+    return decided(
+        "axes_yield", of, gain, decisions.TAKEN_IN, "axes yield" if gain > decisions.TAKEN_IN else "axes stick"
+    )
 
 
 def changes_names(
