@@ -84,16 +84,6 @@ class Gpio:
 
 
 @dataclass(frozen=True)
-class ReceivedByte:
-    """A byte that has completely left the board, with the end of its stop bit."""
-
-    value: int
-    end_s: float
-    framing_error: bool
-    noise: bool
-
-
-@dataclass(frozen=True)
 class Reset:
     """A reset of the board: `power`, `pin`, `software` or `watchdog`, and when."""
 

@@ -15,7 +15,6 @@ from rig.emulator.answers import (
     CallsResult,
     Gpio,
     Pwm,
-    ReceivedByte,
     Reset,
     StoppedError,
     no_memory,
@@ -171,25 +170,13 @@ class EmulatedBoard:
         """Number of bytes that `uart_read` would give."""
         return int(self._status().host_bytes)
 
-    def uart_read_timed(self) -> list[ReceivedByte]:
-        """Bytes that have completely left the board, each with the end of its stop bit."""
-        values, ends_ps, errors = self._received(None)
-        rows = zip(values, ends_ps, errors, strict=True)
-        return [ReceivedByte(value, end / PS_PER_S, bool(error & 1), bool(error & 2)) for value, end, error in rows]
-
     def uart_read(self, most: int | None = None) -> bytes:
         """Bytes that have completely left the board."""
-        return self._received(most)[0]
-
-    def _received(self, most: int | None) -> tuple[bytes, list[int], bytes]:
         count = self.uart_waiting() if most is None else min(most, self.uart_waiting())
-        values, ends_ps, errors = (
-            self._ffi.new("uint8_t[]", count),
-            self._ffi.new("uint64_t[]", count),
-            self._ffi.new("uint8_t[]", count),
-        )
+        kinds = ("uint8_t", "uint64_t", "uint8_t")
+        values, ends_ps, errors = (self._ffi.new(f"{kind}[]", count) for kind in kinds)
         self._lib.emulator_receive(self._machine, values, ends_ps, errors, count)
-        return bytes(self._ffi.buffer(values, count)), list(ends_ps), bytes(self._ffi.buffer(errors, count))
+        return bytes(self._ffi.buffer(values, count))
 
     # --- pins ---
 
@@ -200,10 +187,6 @@ class EmulatedBoard:
     def set_analogue(self, channel: int, code: int) -> None:
         """Put on a channel of the converter the voltage that it reads as `code`, 0 to 4095; what is beyond reads as the end."""
         self._lib.emulator_set_analogue(self._machine, channel, min(max(code, 0), ADC_CODES - 1))
-
-    def silence_converter(self) -> None:
-        """Break the converter: no conversion ends from now on."""
-        self._lib.emulator_silence_converter(self._machine)
 
     def timer_register(self, timer: int, word: int) -> int:
         """A timer's register by word offset (CNT is 9)."""
@@ -226,10 +209,6 @@ class EmulatedBoard:
         self._lib.emulator_gpio(self._machine, "ABC".index(port), mode, output)
         return Gpio(mode[0], output[0])
 
-    def drive_pin(self, port: str, pin: int, level: bool) -> None:
-        """Put a level on an input pin from outside."""
-        self._lib.emulator_drive_pins(self._machine, "ABC".index(port), 1 << pin, int(level) << pin)
-
     # --- what happened ---
 
     @property
@@ -244,12 +223,6 @@ class EmulatedBoard:
     def resets_total(self) -> int:
         """How many resets there were, the power-on included."""
         return int(self._status().resets_total)
-
-    def exception_counts(self) -> dict[int, int]:
-        """How often each exception number was taken (16 + n is interrupt n)."""
-        counts = self._ffi.new("uint64_t[48]")
-        self._lib.emulator_exception_counts(self._machine, counts)
-        return {number: int(counts[number]) for number in range(48) if counts[number]}
 
     def execution_counts(self) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
         """Executions per halfword of flash and of SRAM."""
@@ -291,10 +264,6 @@ class EmulatedBoard:
         out = self._ffi.new("uint32_t[21]")
         self._lib.emulator_registers(self._machine, out)
         return list(out)
-
-    def set_registers(self, values: Sequence[int]) -> None:
-        """Set r0-r15 and the flags (bits 31:28 of the 17th value)."""
-        self._lib.emulator_set_registers(self._machine, list(values))
 
     def scratch_address(self) -> int:
         """First free RAM behind the image's data, aligned to 8 bytes: room for arguments of `call`."""

@@ -8,6 +8,7 @@ from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
 from rig.link.frames import Frame, FrameReceiver, encode_frame
 from tests.firmware.box import DIGEST, word
+from tests.rig.emulator.probe import set_registers
 
 MODES = {choice.name: choice.code for choice in PROTOCOL.enumeration("mode").choices}
 STATES = {choice.code: choice.name for choice in PROTOCOL.enumeration("state").choices}
@@ -74,7 +75,7 @@ class Desk:
         address = self.board.scratch_address()
         self.board.write_memory(address, INTERRUPTS_ON_AND_BRANCH_TO_SELF)
         registers = self.board.registers()
-        self.board.set_registers([*registers[:15], address, registers[16]])
+        set_registers(self.board, [*registers[:15], address, registers[16]])
 
     def poke(self, name: str, value: int) -> None:
         """Change a word of RAM."""

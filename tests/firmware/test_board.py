@@ -11,6 +11,7 @@ from rig.programming.image import FIRMWARE_DIR, build_firmware, linker_script
 from tests.firmware.box import DIGEST, sample_words, stand_in_law, word
 from tests.firmware.desk import MODES, STATES, Desk
 from tests.law_tables import ce150_table
+from tests.rig.emulator.probe import set_registers
 from tests.soak import SOAK
 from toolchain.host import CText
 from toolchain.target import TARGET_FLAGS, build_image
@@ -224,7 +225,7 @@ def test_a_receive_ring_that_is_full_counts_every_byte_that_it_lost(desk):
     desk.hang()
     desk.board.uart_write(b"\x01" * 600)
     desk.run(600 * 10 * BIT_S + 0.0005)
-    desk.board.set_registers([*place[:16], place[16]])
+    set_registers(desk.board, [*place[:16], place[16]])
     desk.run(TICK_S)  # until the ring is empty again
     desk.board.uart_write(b"\0")
     counted = desk.counters
@@ -277,7 +278,7 @@ def test_a_fault_turns_the_rotors_off_at_once(stand_in):
     desk.board.run_until_symbol("path_tick", desk.board.time_s + 2 * TICK_S)
     assert desk.board.pwm().enabled
     registers = desk.board.registers()
-    desk.board.set_registers([*registers[:15], 0x60000000, registers[16]])
+    set_registers(desk.board, [*registers[:15], 0x60000000, registers[16]])
     desk.board.run_for(200)
     assert desk.board.pwm().enabled is False
     desk.board.run_until_s(desk.board.time_s + 0.4)

@@ -5,6 +5,7 @@ import pytest
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
 from tests.firmware.desk import Desk
+from tests.rig.emulator.probe import set_registers
 
 TICK_S = 0.01
 WATCHDOG_S = 0.125
@@ -44,7 +45,7 @@ def jump_to(desk: Desk, code: bytes) -> None:
     address = desk.board.scratch_address()
     desk.board.write_memory(address, bytes.fromhex("62b6") + code)  # cpsie i
     registers = desk.board.registers()
-    desk.board.set_registers([*registers[:15], address, registers[16]])
+    set_registers(desk.board, [*registers[:15], address, registers[16]])
 
 
 def starts_anew(desk: Desk) -> None:

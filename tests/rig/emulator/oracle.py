@@ -9,6 +9,7 @@ from unicorn import arm_const as arm
 from records.board import STM32G071
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.stops import Stop
+from tests.rig.emulator.probe import set_registers
 
 FLASH, RAM = STM32G071.flash, STM32G071.ram
 GENERAL = [getattr(arm, f"UC_ARM_REG_R{i}") for i in range(13)] + [
@@ -89,7 +90,7 @@ def is_code(address: int) -> bool:
 
 def board_step(board: EmulatedBoard, registers: Sequence[int], xpsr: int) -> tuple[Outcome, Stop]:
     """The same on the emulated board; a branch out of all code faults at once in unicorn, so it counts as a fault here too."""
-    board.set_registers([*registers, xpsr])
+    set_registers(board, [*registers, xpsr])
     stop = board.run_for(1)
     after = board.registers()
     return Outcome(True) if stop.is_fault or not is_code(after[15]) else Outcome(False, normal(after)), stop

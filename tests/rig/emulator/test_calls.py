@@ -9,6 +9,7 @@ from rig.emulator.answers import StoppedError
 from rig.emulator.bench import measure
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.stops import StopKind
+from tests.rig.emulator.probe import exception_counts
 from tests.rig.emulator.programs import PRELUDE, build, powered, word
 
 SOURCE = """
@@ -166,7 +167,7 @@ def test_the_same_input_gives_the_same_cycles_and_the_same_counters() -> None:
             board.cycles,
             board.instructions,
             board.registers(),
-            board.exception_counts(),
+            exception_counts(board),
             board.execution_counts()[0].tobytes(),
         )
 

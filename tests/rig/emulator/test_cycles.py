@@ -4,6 +4,7 @@ import pytest
 
 from records.board import STM32G071
 from rig.emulator.board import EmulatedBoard
+from tests.rig.emulator.probe import set_registers
 from tests.rig.emulator.programs import powered
 from tests.rig.emulator.test_oracle import IDLE
 
@@ -33,7 +34,7 @@ def put(board: EmulatedBoard, halfwords: list[int]) -> None:
     board.write_memory(PC, b"".join(half.to_bytes(2, "little") for half in halfwords))
     board.write_memory(SP, b"".join((PC + 0x101).to_bytes(4, "little") for _ in range(9)))
     registers = [R0, R1, 0, PC + 0x201, 0, 0, 0, 0, 0, 0, 0, 0, 0, SP, PC + 0x301, PC]
-    board.set_registers([*registers, Z_SET])
+    set_registers(board, [*registers, Z_SET])
 
 
 @pytest.mark.parametrize(("name", "halfwords", "cycles"), TABLE, ids=[row[0] for row in TABLE])
@@ -62,7 +63,7 @@ def test_code_runs_everywhere_at_the_same_cost_and_a_change_of_it_takes_effect(p
     board = powered("idle", IDLE)
     for value in (7, 9):  # movs r0, #value; b .
         board.write_memory(place, bytes([value, 0x20, 0xFE, 0xE7]))
-        board.set_registers([0] * 13 + [SP, 0, place, 0])
+        set_registers(board, [0] * 13 + [SP, 0, place, 0])
         before = board.cycles
         board.run_for(3)
         assert board.registers()[0] == value

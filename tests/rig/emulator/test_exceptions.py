@@ -5,6 +5,7 @@ import pytest
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.stops import StopKind
+from tests.rig.emulator.probe import exception_counts
 from tests.rig.emulator.programs import powered, word
 
 TIM6, TIM7 = 17, 18
@@ -188,7 +189,7 @@ def test_a_late_arrival_that_is_more_urgent_takes_over_the_frame(head_start: int
         source = source.replace("0x4000142C) = 199", f"0x4000142C) = {199 - head_start}")
     board = run(f"late{head_start}", source)
     assert log(board) == order
-    assert board.exception_counts() == {16 + TIM6: 1, 16 + TIM7: 1}
+    assert exception_counts(board) == {16 + TIM6: 1, 16 + TIM7: 1}
 
 
 MASKED = """

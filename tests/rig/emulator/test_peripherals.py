@@ -1,6 +1,7 @@
 """Peripherals of a few registers: interrupt controller, pins, the chip's identity."""
 
 from rig.emulator.answers import BoardConfig
+from tests.rig.emulator.probe import drive_pin
 from tests.rig.emulator.programs import powered, stopped, word
 
 NVIC = """
@@ -52,7 +53,7 @@ def test_pins_follow_their_latch_and_read_what_the_host_drives() -> None:
     VECTORS(0);
     """
     board = powered("pins", source)
-    board.drive_pin("B", 1, True)
+    drive_pin(board, "B", 1, True)
     board.run_for(1000)
     assert [word(board, "in", i) for i in range(3)] == [1 << 3 | 1 << 1, 1 << 1, 0x8008]
     assert board.gpio("B").drives(3) is True

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import pytest
 
+from tests.rig.emulator.probe import exception_counts
 from tests.rig.emulator.programs import TICK, powered, stopped, word
 
 
@@ -13,7 +14,7 @@ def test_tim6_interrupts_every_ten_milliseconds_without_drift() -> None:
     assert word(board, "ticks") == 100
     board.run_until_s(60.0005)
     assert word(board, "ticks") == 6000
-    assert board.exception_counts() == {16 + 17: 6000}
+    assert exception_counts(board) == {16 + 17: 6000}
 
 
 @pytest.mark.parametrize(("name", "prescaler", "reload"), [("one", 0, 199), ("three", 2, 99), ("many", 999, 1)])

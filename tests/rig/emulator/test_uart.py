@@ -8,6 +8,7 @@ import pytest
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.stops import StopKind
+from tests.rig.emulator.probe import exception_counts, received_bytes
 from tests.rig.emulator.programs import powered, word
 
 FRAME_BITS = 10
@@ -89,7 +90,7 @@ def test_bytes_come_back_in_order_one_frame_of_ten_bits_apart() -> None:
     begin = board.time_s
     board.uart_write(bytes(range(20)))
     board.run_until_s(begin + 22 * BOARD_BYTE_S + 1e-5)
-    answer = board.uart_read_timed()
+    answer = received_bytes(board)
     assert [byte.value for byte in answer] == list(range(1, 21))
     assert answer[0].end_s == pytest.approx(begin + HOST_BYTE_S + BOARD_BYTE_S, abs=2e-6)
     gaps = [after.end_s - before.end_s for before, after in pairwise(answer)]
@@ -121,7 +122,7 @@ def test_status_follows_data_and_shift_register() -> None:
     seen = [word(board, "flags", i) & (TXE | TC) for i in range(5)]
     # Idle; first byte at once in the shift register; second waits; room again; all gone.
     assert seen == [TXE | TC, TXE, 0, TXE, TXE | TC]
-    received = board.uart_read_timed()
+    received = received_bytes(board)
     assert [byte.value for byte in received] == [0x55, 0xAA, 0x0F]
     assert received[2].end_s - received[0].end_s == pytest.approx(2 * BOARD_BYTE_S, rel=0.01)
 
@@ -179,7 +180,7 @@ def test_what_happens_does_not_depend_on_how_a_run_is_cut_into_slices(source: st
         for t_s in sorted(rng.uniform(0, 2e-3, slices)):
             board.run_until_s(t_s)
         board.run_until_s(2e-3)
-        return board.registers(), board.cycles, board.instructions, board.uart_read_timed(), board.exception_counts()
+        return board.registers(), board.cycles, board.instructions, received_bytes(board), exception_counts(board)
 
     whole = final(0)
     assert len(whole[3]) == 10  # type: ignore[arg-type]

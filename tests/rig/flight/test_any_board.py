@@ -34,6 +34,7 @@ from sim.runs.stepped import SteppedPlant
 from sim.wiring import wiring
 from tests.codegen.test_any_loops import STIMULI, TWINS, any_table
 from tests.other_plants import PLANTS, WISHES, plant_file
+from tests.rig.emulator.probe import silence_converter
 from tests.rig.images import emulated_url
 from tests.soak import SOAK, sampled
 from twinlaw.workflows.chain.designing import design_plant
@@ -193,7 +194,7 @@ def test_a_sensor_at_its_end_or_without_an_answer_ends_the_flight_by_the_ramp(co
             emulated.run_until_s(emulated.time_s + 0.02)
             assert client.health().state == "FLYING"
         if code is None:
-            emulated.silence_converter()
+            silence_converter(emulated)
         else:
             emulated.set_analogue(4, code)
         emulated.run_until_s(emulated.time_s + 0.02)
