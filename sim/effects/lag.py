@@ -7,7 +7,7 @@ An input's may be two in a row, as the current of a winding and the speed behind
 (2)  (1 - b) tau w' = u - w,   b tau v' = w - v
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import sympy
@@ -17,9 +17,11 @@ from sim.effect import Effect, EffectParameter, FilterState, Role
 from sim.model import Model, symbol
 from sim.paths.input_stages import Lag
 from sim.paths.output_stages import OutputLag
+from sim.places import SensorPlace
 from sim.prior import COMMON, UNSEEN_LOSSES, Unlikely
 
 LATE = "slow motion shows only the mean time by which both are late"
+SAME = "identical: the rotor has no other lag between command and thrust"
 THROUGH = "where the plant is linear and nothing disturbs it, a lag before it is one behind it"
 
 
@@ -52,23 +54,7 @@ def effects(model: Model) -> Iterator[Effect]:
             )
     before = [f"{place}.lag" for place in (*model.places.inputs, *model.places.rotors)]
     for place, sensor in model.places.sensors.items():
-        output = [*model.outputs].index(sensor.output)
-        state = f"{sensor.output}_read"
-        yield Effect(
-            name=f"{place}.lag",
-            depends=f"lag of {short(sensor.output)}",
-            parameters=(EffectParameter("tau", "s", 0.0, 1.0, 0.015, 0.0, (0.01, 0.05, 0.15), role=Role.LATENESS),),
-            equation="tau y' = angle - y",
-            story="The reading is smoothed and so comes late.",
-            source="a sensor's filter",
-            prior=COMMON,
-            filter_state=FilterState(state, partial(_read_late, state, sensor.output), follows=sensor.output),
-            on_output=lambda values, output=output: OutputLag(output, values["tau"]),
-            twins={f"{place}.delay": LATE, "loop.delay": LATE} | dict.fromkeys(before, THROUGH),
-        )
-
-
-SAME = "identical: the rotor has no other lag between command and thrust"
+        yield _of_sensor(model, place, sensor, before)
 
 
 def _lag(
@@ -96,6 +82,24 @@ def _lag(
         on_input=lambda values: Lag(column, values["tau"], values.get("b", 0.0)),
         twins=twins,
         copy_of=copy_of,
+    )
+
+
+def _of_sensor(model: Model, place: str, sensor: SensorPlace, before: Sequence[str]) -> Effect:
+    """Eq (1); `before` are the lags that lie before the plant."""
+    output = [*model.outputs].index(sensor.output)
+    state = f"{sensor.output}_read"
+    return Effect(
+        name=f"{place}.lag",
+        depends=f"lag of {short(sensor.output)}",
+        parameters=(EffectParameter("tau", "s", 0.0, 1.0, 0.015, 0.0, (0.01, 0.05, 0.15), role=Role.LATENESS),),
+        equation="tau y' = angle - y",
+        story="The reading is smoothed and so comes late.",
+        source="a sensor's filter",
+        prior=COMMON,
+        filter_state=FilterState(state, partial(_read_late, state, sensor.output), follows=sensor.output),
+        on_output=lambda values: OutputLag(output, values["tau"]),
+        twins={f"{place}.delay": LATE, "loop.delay": LATE} | dict.fromkeys(before, THROUGH),
     )
 
 
