@@ -15,12 +15,13 @@ import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from identification.envelope.by_hand import tried
+from identification.envelope.by_hand import Tried, tried
 from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import Flight
 from identification.envelope.flights.flight_file import load_flights, save_flight
 from identification.envelope.flights.starts import NONE, load_starts
-from identification.envelope.modes import modes_of
+from identification.envelope.modes import Mode, modes_of
+from identification.envelope.one_condition import ConditionResult
 from identification.envelope.quality import envelope_quality
 from identification.envelope.record import facts, modes_facts, modes_summary, open_loop_facts, summary, validations
 from identification.envelope.state_equation.free_run import Model
@@ -31,7 +32,7 @@ from identification.envelope.truth.linear import linearised
 from identification.envelope.truth.plan import plan
 from records.errors import BadInput
 from records.files import write_atomic
-from records.quality import quality_facts
+from records.quality import Quality, quality_facts
 from twinlaw.cli import console, options
 from twinlaw.pages.envelope.models import modes_off
 from twinlaw.pages.envelope.report import envelope_page, notes_of, shown, verdict
@@ -98,6 +99,15 @@ def run(chosen: argparse.Namespace) -> int:
             json.dumps({**summary(found), **means, "quality": quality_facts(quality), "notes": list(notes_of(found))})
         )
         return 0
+    _tell(found, quality, tries, drawn_one, None if exact is None else modes)
+    print(f"\n{chosen.out / 'report.html'}")
+    return 0
+
+
+def _tell(
+    found: Study, quality: Quality, tries: Sequence[Tried], drawn_one: ConditionResult, modes: Sequence[Mode] | None
+) -> None:
+    """What was found in tables; `modes` where the truth is known."""
     print(f"{verdict(summary(found))}\n{quality_sentence(quality)}")
     for flight in tries:
         print(f"\n{_shown(by_hand(flight))}")
@@ -106,11 +116,9 @@ def run(chosen: argparse.Namespace) -> int:
     if found.left_out:
         tables = "\n\n".join(map(_shown, interpolation(found)))
         print(f"\nConditions left out\n{tables}")
-    if exact is not None:
+    if modes is not None:
         print(f"\n{_shown(modes_off(modes))}")
     console.notes(notes_of(found))
-    print(f"\n{chosen.out / 'report.html'}")
-    return 0
 
 
 def _left(path: Path, saved: list[Study]) -> str:

@@ -12,7 +12,8 @@ from records.files import remove_all, write_atomic
 from records.log import save_log
 from records.quality import quality_facts
 from records.table import table_text
-from records.verification import verification_text
+from records.verification import Verification, verification_text
+from rig.programming.image import FirmwareImage
 from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.page import page_text
@@ -73,13 +74,27 @@ def run(chosen: argparse.Namespace) -> int:
         roll_off_trade(designed),
     )
     write_atomic(out / "report.html", page_text(page))
+    _tell(designed, verification, image, flight, why, chosen)
+    return 0
+
+
+def _tell(
+    designed: Designed,
+    verification: Verification,
+    image: FirmwareImage,
+    flight: ChainFlight,
+    why: str,
+    chosen: argparse.Namespace,
+) -> None:
+    """Each stage's figures, for a program where it asks."""
+    out = chosen.out
     if chosen.json:
         facts = {"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}
         facts |= {"design": design_facts(designed.report), "verification": json.loads(verification_text(verification))}
         facts |= {"left": list(left(flight.tracking)), "cause": why, **tracking_facts(flight.tracking)}
         facts |= {"quality": quality_facts(flight_quality(flight.tracking)), "sizes": asdict(image.sizes)}
         print(json.dumps(facts))
-        return 0
+        return
     if gone := left_sentence(flight.tracking):
         print(f"{gone}\n")
     print(console.table(design_rows(designed.report), design_heading(designed.report)))
@@ -92,4 +107,3 @@ def run(chosen: argparse.Namespace) -> int:
         print(f"{quality_told(flight_quality(flight.tracking), why)}\n")
     print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")
-    return 0
