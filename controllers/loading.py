@@ -12,8 +12,8 @@ from controllers.equations.equation_controller import EquationController
 from controllers.table import CONTROLLERS
 from records.errors import BadInput
 from records.law_table import SCHEMA, AxisTable, FlownTable, LawTable
-from records.loops import Loop
-from records.table import ControllerTable, demand_digest, own_section, parse_frame, parse_table
+from records.loops import Loop, own_section
+from records.table import ControllerTable, demand_digest, parse_frame, parse_table
 from records.text import checks
 from records.text.reading import read_json
 

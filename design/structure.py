@@ -6,9 +6,8 @@ from typing import Any
 
 from design.pins import with_pins
 from records.errors import BadInput
-from records.loops import LOOPS, MOST_LOOPS, Loop
+from records.loops import LOOPS, MOST_LOOPS, Loop, demand_distinct, parse_loop
 from records.pages import page
-from records.table import demand_distinct, parse_loop
 from records.text import checks
 from sim.bind import BoundPlant
 from sim.model import Axis, Model

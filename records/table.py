@@ -19,14 +19,13 @@ What is no number, and a state that is broken, are answered alike by every form 
 import hashlib
 import json
 import math
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from records.errors import BadInput
-from records.loops import LOOPS, MOST_LOOPS, Analogue, Loop, Pins
+from records.loops import LOOPS, PARTS, TABLE_KEYS, Loop, own_section, parse_loops
 from records.text import checks
 from records.text.reading import read_json
 
@@ -35,21 +34,6 @@ AXES = tuple(loop.axis for loop in LOOPS)  # the helicopter's
 ORDERS = range(1, 6)  # states of an axis that a law can be made for
 Polynomial = tuple[float, ...]
 A = TypeVar("A")
-_LOOP_NAMES = ("axis", "output", "input", "motor")
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
-# What C11 and C++ keep for themselves: a loop's names become members and functions of headers that both read.
-_C_WORDS = frozenset(
-    """
-    alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const const_cast constexpr continue
-    decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int
-    long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast
-    restrict return short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try
-    typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq
-    NULL
-    """.split()  # noqa: SIM905
-)
-_OF_THE_LAW = ("axis",)  # whose limits would be called as the type of all limits
-
 # A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
 # for one): it comes from a broken state, and the axis starts afresh.
 PLAUSIBLE_V = 2.0**20
@@ -194,8 +178,6 @@ def parse_table(content: Mapping[str, Any], where: str) -> ControllerTable:
 
 # What the tables of all controllers share (records/law_table.py).
 
-_SHARED = ("schema", "digest", "plant", "sample_period_s", "origin", "loops")
-
 
 def content_of(table: Table[Any]) -> dict[str, Any]:
     """What the file states besides schema and digest: the schedule's range under its angle's symbol, each axis under its name.
@@ -228,7 +210,7 @@ def _in_units(loop: Loop, section: Mapping[str, Any]) -> dict[str, Any]:
 def _told_loop(loop: Loop) -> dict[str, Any]:
     """What there is of a loop."""
     pins = {} if loop.pins is None else {"pins": _told_pins(loop, asdict(loop.pins))}
-    return {**{name: getattr(loop, name) for name in _LOOP_NAMES}, **pins}
+    return {**{name: getattr(loop, name) for name in PARTS}, **pins}
 
 
 def _told_pins(loop: Loop, section: dict[str, Any]) -> dict[str, Any]:
@@ -255,7 +237,7 @@ def parse_frame(
     schedule = _schedule(content, loops, where)
     names = [loop.axis for loop in loops]
     ranges = () if schedule is None else range_keys(loops[names.index(schedule.axis)])
-    required = [name for name in _SHARED if name != "loops"]
+    required = [name for name in TABLE_KEYS if name != "loops"]
     checks.keys(content, where, (*required, *own, *names, *ranges), ("loops",))
     return {
         "plant": checks.text(content["plant"], f"{where}: plant"),
@@ -272,100 +254,6 @@ def demand_digest(digest: str, content: Mapping[str, Any], where: str) -> None:
     if digest != content["digest"]:
         got, expected = str(content["digest"])[:16], digest[:16]
         raise BadInput("digest", where, got, expected, "the table was changed by hand: design it again")
-
-
-def parse_loops(entries: Any, where: str) -> tuple[Loop, ...]:
-    """One to four loops of distinct names; raises BadInput."""
-    if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_LOOPS:
-        raise BadInput("loops", where, repr(entries)[:60], f"a list of 1 to {MOST_LOOPS} loops", "name fewer loops")
-    loops = tuple(parse_loop(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
-    demand_distinct(loops, where)
-    return loops
-
-
-def demand_distinct(loops: Sequence[Loop], where: str) -> None:
-    """Raise BadInput where two loops share a name, a column or a pin."""
-    named = {name: [getattr(loop, name) for loop in loops] for name in _LOOP_NAMES}
-    named["pins"] = [name for loop in loops if loop.pins is not None for name in loop.pins.names]
-    for what, names in named.items():
-        if len(set(names)) < len(names):
-            raise BadInput("loops", where, f"{what} {', '.join(names)}", "each once", "name each loop's own")
-    _demand_own_symbols(loops, where)
-    _demand_own_members(loops, where)
-
-
-def _demand_own_symbols(loops: Sequence[Loop], where: str) -> None:
-    """Names in C are made of the columns without their units: theta of theta_rad."""
-    columns = [pair for loop in loops for pair in ((loop.symbol, loop.output), (loop.voltage, loop.input))]
-    for symbol, column in columns:
-        same = next((other for known, other in columns if known == symbol and other != column), None)
-        if same is not None:
-            expected = "columns that differ without their units, as names in C are made of these"
-            remedy = f"rename one in the equations: u_{column}, say"
-            raise BadInput(
-                "loops", where, f"{column} and {same}, both {symbol!r} without their units", expected, remedy
-            )
-
-
-def _demand_own_members(loops: Sequence[Loop], where: str) -> None:
-    """The law's state holds each loop by its name, beside what was measured and asked for last."""
-    columns = [name for loop in loops for name in (loop.output, loop.reference)]
-    for loop in loops:
-        if loop.axis in columns:
-            got = f"a loop called {loop.axis!r}, as a column is"
-            raise BadInput("loops", where, got, "a name of its own", f"call it {loop.symbol}, say")
-
-
-def parse_loop(entry: Any, where: str) -> Loop:
-    """One loop, as a table's file states it; raises BadInput naming the part that cannot be used."""
-    section = checks.table(entry, where)
-    checks.keys(section, where, _LOOP_NAMES, ("pins",))
-    named = {name: checks.text(section[name], f"{where}.{name}") for name in _LOOP_NAMES}
-    loop = Loop(named["axis"], named["output"], named["input"], named["motor"])
-    if "pins" in section:
-        loop = replace(loop, pins=_pins(section["pins"], f"{where}.pins", loop))
-    for name, value in named.items():
-        if not _NAME.fullmatch(value):
-            expected = "letters a to z, digits and _, as in C, a letter first, 31 at most"
-            raise BadInput("name", f"{where}.{name}", repr(value), expected, "choose another name")
-    if loop.axis in (*_SHARED, *_OF_THE_LAW):
-        got = f"{loop.axis!r}, which the table or its C has for something else"
-        raise BadInput("name", f"{where}.axis", got, "a name of its own", "choose another name")
-    for name, value in (("axis", loop.axis), ("motor", loop.motor), ("output", loop.symbol), ("input", loop.voltage)):
-        if value in _C_WORDS:
-            got = f"{named[name]!r}, in C {value!r}, a word of that language or of C++"
-            raise BadInput("name", f"{where}.{name}", got, "a name that no keyword is", "choose another name")
-    return loop
-
-
-def _pins(entry: Any, where: str, loop: Loop) -> Pins:
-    section = checks.table(entry, where)
-    sensor = "analogue" if "analogue" in section else "encoder"
-    scale = loop.own("full_scale_V")
-    checks.keys(section, where, (sensor, "pwm", scale), ("direction",))
-    names = {name: checks.text(section[name], f"{where}.{name}") for name in ("pwm", "direction") if name in section}
-    full_scale_V = checks.positive(section[scale], f"{where}.{scale}")
-    if sensor == "analogue":
-        analogue = _analogue(section[sensor], f"{where}.{sensor}", loop)
-        return Pins(None, names["pwm"], names.get("direction"), analogue, full_scale_V)
-    encoder = _encoder(section[sensor], f"{where}.{sensor}")
-    return Pins(encoder, names["pwm"], names.get("direction"), None, full_scale_V)
-
-
-def _encoder(entry: Any, where: str) -> tuple[str, str]:
-    if not isinstance(entry, list | tuple) or len(entry) != 2:
-        raise BadInput("encoder", where, repr(entry)[:40], "the names of two pins", 'write encoder = ["PA0", "PA1"]')
-    first, second = (checks.text(name, where) for name in entry)
-    return first, second
-
-
-def _analogue(entry: Any, where: str, loop: Loop) -> Analogue:
-    section = own_section(entry, where, loop, Analogue.__dataclass_fields__)
-    scales = ("zero_scale_rad", "full_scale_rad")
-    return Analogue(
-        checks.text(section["pin"], f"{where}.pin"),
-        *(checks.number(section[name], f"{where}.{loop.own(name)}") for name in scales),
-    )
 
 
 def _schedule(content: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -> Schedule | None:
@@ -387,13 +275,6 @@ def _range_entries(table: Table[Any]) -> dict[str, float]:
 def range_keys(loop: Loop) -> tuple[str, str]:
     """What the ends of the schedule's range are called, in a table and in a plant file's wishes."""
     return loop.own(f"{loop.symbol}_min_rad"), loop.own(f"{loop.symbol}_max_rad")
-
-
-def own_section(entry: Any, where: str, loop: Loop, names: Iterable[str]) -> dict[str, Any]:
-    """A section whose keys are in the loop's units, by the names inside; raises BadInput unless they are those of `names`."""
-    section, names = checks.table(entry, where), tuple(names)
-    checks.keys(section, where, map(loop.own, names))
-    return {name: section[loop.own(name)] for name in names}
 
 
 def _axis(entry: Any, where: str, loop: Loop) -> AxisLaw:

@@ -3,7 +3,7 @@
 import pytest
 
 from records.errors import BadInput
-from records.table import parse_loops
+from records.loops import parse_loops
 
 
 @pytest.mark.parametrize(
