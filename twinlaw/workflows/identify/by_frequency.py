@@ -48,15 +48,7 @@ OTHER_METHODS = ("window", "offsets", "prior", "search")
 
 def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -> int:
     """Read logs and those held out, match, write, tell; raises BadInput."""
-    for option in OTHER_METHODS:
-        if getattr(chosen, option):
-            raise BadInput(
-                f"--{option}",
-                "command line",
-                "given with --method frequency",
-                "an option of this method",
-                "leave it out",
-            )
+    _demand_own_options(chosen)
     plant = load_plant(chosen.plant)
     true = None if chosen.truth is None else load_plant(chosen.truth)
     if true is not None and true.model != plant.model:
@@ -75,16 +67,24 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
     save_plant(chosen.out / "plant.toml", found.result.plant)
     content = frequency_facts(found) | quality_of(frequency_quality(found, done.truth), done.truth)
     write_atomic(chosen.out / "identification.json", json.dumps(content, indent=1) + "\n")
-    plots = pictures(found, done.truth, done.flown)
-    page = frequency_page(found, plots, done.truth, done.flown)
-    for name, picture in plots.items():
-        write_atomic(chosen.out / f"{name}.svg", picture)
-    write_atomic(chosen.out / "report.html", page_text(page))
+    _draw(done, chosen.out)
     if chosen.json:
         print(json.dumps(content))
     else:
         _tell(chosen, done)
     return 0
+
+
+def _demand_own_options(chosen: argparse.Namespace) -> None:
+    for option in OTHER_METHODS:
+        if getattr(chosen, option):
+            raise BadInput(
+                f"--{option}",
+                "command line",
+                "given with --method frequency",
+                "an option of this method",
+                "leave it out",
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +192,15 @@ def _log(path: Path, columns: LogColumns) -> RunLog:
             "locked", str(path), ", ".join(log.locked), "all axes free", "give records in which no axis is held"
         )
     return log
+
+
+def _draw(done: Done, out: Path) -> None:
+    """The report, and each of its pictures by itself."""
+    plots = pictures(done.found, done.truth, done.flown)
+    page = frequency_page(done.found, plots, done.truth, done.flown)
+    for name, picture in plots.items():
+        write_atomic(out / f"{name}.svg", picture)
+    write_atomic(out / "report.html", page_text(page))
 
 
 def _tell(chosen: argparse.Namespace, done: Done) -> None:
