@@ -27,7 +27,7 @@ Clocks = Mapping[float, Fit]  # the plant's fit on each clock that was tried, by
 
 
 def clock_in_doubt(case: Case, nominal: Fit) -> tuple[Note, ...]:
-    """That the logs' clock may run fast or slow, and by how much: read on another one the plant follows them more than CLOCK_TOLD better,
+    """That the logs' clock may run fast or slow, and by how much: read on another one the plant follows them more than LOGS_DOUBTED better,
     and no effect promises as much beside it. `nominal` is the plant's fit to the logs as they are, or to a part."""
     plain = settled_or_none(case, nominal.hypothesis)
     if plain is None:
@@ -36,7 +36,7 @@ def clock_in_doubt(case: Case, nominal: Fit) -> tuple[Note, ...]:
     rate, end = _likeliest(case, usual)
     off = abs(rate - 1.0)
     gain = gain_over(case, usual, end) - _cost(rate)
-    if off > decisions.CLOCK_MOST or gain < decisions.CLOCK_TOLD:
+    if off > decisions.CLOCK_MOST or gain < decisions.LOGS_DOUBTED:
         return ()
     if most_by_an_effect(on_clock(case, rate), end) > gain:
         return ()
@@ -58,7 +58,7 @@ def _likeliest(case: Case, usual: Fit) -> tuple[float, Fit]:
         _try(case, clocks, rate)
     for _ in range(MOST_CLOCKS):
         rate, height = _top(clocks, step)
-        if height - _worth(clocks, 1.0) < decisions.PROMISED_SHARE * decisions.CLOCK_TOLD:
+        if height - _worth(clocks, 1.0) < decisions.PROMISED_SHARE * decisions.LOGS_DOUBTED:
             return 1.0, usual
         near = abs(rate - _best(clocks)) < RATE_FOUND
         if near or abs(rate - 1.0) > decisions.CLOCK_MOST + step or not _try(case, clocks, rate):

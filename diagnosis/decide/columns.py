@@ -40,7 +40,7 @@ def is_told(gain: float) -> bool:
 
 def is_refused(gain: float) -> bool:
     """Whether it gains so many that it refuses the logs."""
-    return gain > decisions.COLUMNS_REFUSED
+    return gain > decisions.LOGS_DOUBTED
 
 
 def is_as_good(gain: float, best: float) -> bool:

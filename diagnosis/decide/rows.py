@@ -76,7 +76,7 @@ def demand_rows(
     """What is to be known of the rows in which columns stand: that some may be others, or that these logs do not tell.
 
     Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own,
-    and by more than COLUMNS_REFUSED better; but where an effect promises more than that, the logs are those of a rig that has it.
+    and by more than LOGS_DOUBTED better; but where an effect promises more than that, the logs are those of a rig that has it.
     `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are. `beaten` are the nats by which
     another reading of the inputs between rows is likelier than this one: a move must be likelier than that too; nothing else is told then.
     """

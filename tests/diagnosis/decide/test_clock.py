@@ -36,7 +36,7 @@ def test_a_clock_that_runs_fast_or_slow_is_told_with_its_size(
     (note,) = told(stateless, counted(fly(33, seconds=2.0 * SECONDS), rate))
     assert note.kind in DOUBTS
     assert note.numbers["clock_rate"] == pytest.approx(rate, abs=0.006)
-    assert note.numbers["gain_nats"] > decisions.CLOCK_TOLD
+    assert note.numbers["gain_nats"] > decisions.LOGS_DOUBTED
     assert f"runs {100 * abs(note.numbers['clock_rate'] - 1.0):.2g} % {way}" in str(note.said)
 
 

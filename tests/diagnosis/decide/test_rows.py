@@ -141,7 +141,7 @@ def test_an_arm_that_lacks_its_friction_is_not_taken_for_commands_logged_late() 
 def test_an_effect_that_promises_more_than_a_move_of_columns_is_seen(effects, promised: bool) -> None:
     # Truth: a play of 3 degrees, which one column a row late could follow only in part; and a rig that lacks nothing.
     case = make_case(effect_library(arm()), [arm_log(effects, seed=7)])
-    assert (most_by_an_effect(case, plain_fit(case)) > 2.0 * decisions.COLUMNS_REFUSED) is promised
+    assert (most_by_an_effect(case, plain_fit(case)) > 2.0 * decisions.LOGS_DOUBTED) is promised
 
 
 def test_of_a_move_that_an_effect_explains_better_nothing_is_said() -> None:
