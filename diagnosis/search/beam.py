@@ -44,9 +44,8 @@ class FirstFits:
 
 @dataclass(frozen=True, eq=False)
 class Alone:
-    """Single effects as fitted, the nominal plant, and the effects that are worth a costly score test beside others;
-    `linearisation` and `score_tests` are
-    those of the nominal plant."""
+    """Single effects as fitted, the nominal plant, and the effects that are worth a costly score test beside others; `linearisation` and
+    `score_tests` are those of the nominal plant."""
 
     found: Mapping[frozenset[str], FittedHypothesis]
     nominal: FittedHypothesis
@@ -61,9 +60,8 @@ class Alone:
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """All that was tried, best evidence first, the nominal plant among it; `linearisation` and `score_tests` are
-    those of the nominal plant, `sure` says
-    whether the sizes of what was tried are surely not zero: where none is, all is there."""
+    """All that was tried, best evidence first, the nominal plant among it; `linearisation` and `score_tests` are those of the nominal
+    plant, `sure` says whether the sizes of what was tried are surely not zero: where none is, all is there."""
 
     fitted: tuple[FittedHypothesis, ...]
     nominal: FittedHypothesis
