@@ -39,8 +39,9 @@ STRICT_FLOAT_FLAGS = (
 _LIBRARY_FLAGS = ("-shared", "-fPIC", "-g0")
 # What generated C may call, by the names that glibc gives its files.
 _C_LIBRARY = ("libm.so.6", "libc.so.6", "ld-linux")
-# A name that is missing and none of a runtime's, which begin with two underscores: to build zig's runtime, five seconds, cannot help.
-_NOBODY_S = re.compile(r"undefined symbol: (?!__)")
+# Where to build zig's runtime, five seconds, cannot help: a line that is no C, and a name that is missing and none of a runtime's, which
+# begin with two underscores.
+_NO_RUNTIME_S = re.compile(r":\d+:\d+: error:|undefined symbol: (?!__)")
 _OF_A_SOURCE = re.compile(
     r":\d+:\d+: error:|undefined symbol"
 )  # the compiler's and the linker's own complaints of what they were given
@@ -137,7 +138,7 @@ def build_shared(
         try:
             run_zig([*command, *_linked()], name)
         except BadInput as refused:
-            if _NOBODY_S.search(refused.got):
+            if _NO_RUNTIME_S.search(refused.got):
                 raise
             # A processor may lack what another has: zig's own runtime holds that, or tells the error in full.
             run_zig([*command, "-Wl,-z,defs", "-lm"], name)

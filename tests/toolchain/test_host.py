@@ -64,10 +64,21 @@ def test_a_library_that_was_cut_short_is_built_again(cache: Path, tmp_path: Path
     assert load_shared("int answer(void);", path)[1].answer() == 4
 
 
-def test_a_library_that_calls_what_nobody_has_is_refused_when_it_is_built(cache: Path) -> None:
-    source = CText("answer.c", "int nobody_has_this(void);\nint answer(void) { return nobody_has_this(); }\n")
-    with pytest.raises(BadInput, match="undefined symbol: nobody_has_this"):
-        build_shared("answer", [source])
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("int nobody_has_this(void);\nint answer(void) { return nobody_has_this(); }\n", "undefined symbol: nobody_has_this"),
+        ("int answer(void) { return 1 }\n", r"answer\.c.*expected ';'"),
+    ],
+)
+def test_a_source_s_own_fault_is_told_when_it_is_built_and_no_runtime_is_built_for_it(
+    cache: Path, monkeypatch: pytest.MonkeyPatch, text: str, told: str
+) -> None:
+    asked, compile_once = [], host.run_zig
+    monkeypatch.setattr(host, "run_zig", lambda *asks: (asked.append(asks), compile_once(*asks)))
+    with pytest.raises(BadInput, match=told):
+        build_shared("answer", [CText("answer.c", text)])
+    assert len(asked) == 1
     assert not list(cache.iterdir())
 
 
