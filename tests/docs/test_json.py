@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.angles import few_angles
 from tests.docs.json_page import PAGE, ROWS, is_as_documented, keys
 from tests.docs.results import result
 from tests.twinlaw.verbs.crews import works_here
@@ -39,36 +40,32 @@ def test_what_a_longer_command_printed_is_what_its_row_says(verb: str) -> None:
     assert set(result(KEPT[verb])) <= keys(verb)
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A controller table, a log and a file to import."""
-    made = tmp_path_factory.mktemp("json")
-    assert main(["design", "--out", str(made)]) == 0
-    assert main(["simulate", "--out", str(made)]) == 0
-    return made
-
-
 @pytest.mark.parametrize(
-    ("verb", "words"),
+    "command",
     [
-        ("design", []),
-        ("generate", ["--table", "FOLDER/controller.json"]),
-        ("build", ["--table", "FOLDER/controller.json"]),
-        ("simulate", ["--table", "FOLDER/controller.json"]),
-        ("trace", ["elevation_q_1_V_rad[2]", "--table", "FOLDER/controller.json"]),
-        ("import", ["FOLDER/simulation.csv"]),
-        ("export", ["FOLDER/simulation.csv"]),
-        ("new-plant", ["my_arm"]),
-        ("doctor", []),
+        "design",
+        "generate --table FOLDER/controller.json",
+        "build --table FOLDER/controller.json",
+        "simulate --table FOLDER/controller.json",
+        "trace elevation_q_1_V_rad[2] --table FOLDER/controller.json",
+        "import FOLDER/run.csv",
+        "export FOLDER/run.csv",
+        "new-plant my_arm",
+        "doctor",
     ],
 )
 def test_a_verb_prints_the_keys_of_its_row(
-    verb: str, words: list[str], folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    command: str,
+    ran: tuple[Path, str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
+    few_angles(monkeypatch)
+    verb, *words = command.replace("FOLDER", str(ran[0])).split()
     files = {"import": "log.csv", "export": "log.mf4"}
     out = [] if verb in ("trace", "doctor") else ["--out", str(tmp_path / files.get(verb, ""))]
-    capsys.readouterr()
-    assert main([verb, *(word.replace("FOLDER", str(folder)) for word in words), *out, "--json"]) == 0
+    assert main([verb, *words, *out, "--json"]) == 0
     assert is_as_documented(verb, json.loads(capsys.readouterr().out))
 
 
