@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from identification.runs.rows import trimmed
 from records.errors import BadInput
 from records.log import RunLog, load_log
 from records.plant import load_plant, save_plant
@@ -184,7 +185,7 @@ def test_commands_that_a_motor_s_log_has_a_row_late_are_named_and_made_no_physic
     """Its current follows within a row of 10 ms: another inductance, or inputs that move between rows, make up for a part of it."""
     assert main(["new-plant", "motor", "--like", "motor", "--out", str(tmp_path)]) == 0
     motor = bind(load_plant(tmp_path / "plant.toml"))
-    log = fly(motor)
+    log = trimmed(fly(motor), 0.0, 10.0)
     late = replace(log, u=np.concatenate([log.u[:1], log.u[:-1]]))
     with pytest.raises(BadInput, match=r"u_V stands one row late in the log.*move u_V up by one row"):
         verb(motor, {"late": late})
