@@ -33,7 +33,7 @@ def told(library: EffectLibrary, log: RunLog) -> tuple[Note, ...]:
 def test_a_clock_that_runs_fast_or_slow_is_told_with_its_size(
     stateless: EffectLibrary, fly: Fly, rate: float, way: str
 ) -> None:
-    (note,) = told(stateless, counted(fly(33, seconds=2.0 * SECONDS), rate))
+    (note,) = told(stateless, counted(fly(33, seconds=2.0 * SECONDS if SOAK else SECONDS), rate))
     assert note.kind in DOUBTS
     assert note.numbers["clock_rate"] == pytest.approx(rate, abs=0.006)
     assert note.numbers["gain_nats"] > decisions.LOGS_DOUBTED
