@@ -205,8 +205,9 @@ USABLE = (
 def test_what_a_file_may_use_runs_side_by_side_as_alone(mechanism):
     # Truth: SymPy's own number for one run, to 1e-5; the same bits for sixteen at once. Each is the rate of a state of its own.
     plain = mechanism()
-    at = dict(zip(plain.model.states, (0.3, 0.5), strict=True))
-    rates = {symbol(f"z_{k}"): f.subs({S: list(at)[0], V: list(at)[1]}) for k, f in enumerate(USABLE)}
+    s, v = plain.model.states
+    at = {s: 0.3, v: 0.5}
+    rates = {symbol(f"z_{k}"): f.subs({S: s, V: v}) for k, f in enumerate(USABLE)}
     model = replace(plain.model, states=(*at, *rates), rates={**plain.model.rates, **rates})
     bound = replace(plain, model=model)
     t_s, x0, u = [0.0, 1e-7], [*at.values(), *np.zeros(len(rates))], np.zeros((2, 1))

@@ -67,7 +67,10 @@ def test_a_library_that_was_cut_short_is_built_again(cache: Path, tmp_path: Path
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("int nobody_has_this(void);\nint answer(void) { return nobody_has_this(); }\n", "undefined symbol: nobody_has_this"),
+        (
+            "int nobody_has_this(void);\nint answer(void) { return nobody_has_this(); }\n",
+            "undefined symbol: nobody_has_this",
+        ),
         ("int answer(void) { return 1 }\n", r"answer\.c.*expected ';'"),
     ],
 )

@@ -9,7 +9,6 @@ import pytest
 from identification.proof import bench as fit_bench
 from records.loops import LOOPS, Loop
 from sim.bench import comparison, compiled_peers, peak
-from tests.angles import few_angles
 from tests.docs.json_page import is_as_documented
 from tests.plants import stated_table
 from twinlaw.command import main
@@ -18,7 +17,6 @@ from twinlaw.verbs import bench as verb
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch):
-    few_angles(monkeypatch)
     for name, value in {"SECONDS_PER_TOOL": 0.0, "SHORTEST_S": 0.0, "SHORT_S": 0.2, "BATCH": 8}.items():
         monkeypatch.setattr(comparison, name, value)
     monkeypatch.setattr(verb, "BOARD_STEPS", 50)

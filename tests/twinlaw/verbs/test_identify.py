@@ -21,7 +21,6 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.manoeuvres import stir
 from sim.simulate import simulate
-from tests.angles import few_angles
 from tests.diagnosis.arm import arm_log
 from tests.soak import SOAK, sampled
 from tests.twinlaw.verbs.crews import works_here
@@ -48,7 +47,6 @@ def some(folder: Path, names=ROTORS):
 
 @pytest.mark.soak
 def test_nine_experiments_give_a_plant_file_a_report_and_json(folder, monkeypatch, tmp_path, capsys):
-    few_angles(monkeypatch)
     assert main(["identify", "--out", str(tmp_path), "--truth", str(folder / "truth.toml"), "--json", str(folder)]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told == json.loads((tmp_path / "identification.json").read_text())
@@ -102,7 +100,6 @@ def test_an_interrupted_run_leaves_what_was_found_so_far(monkeypatch, folder, tm
 @pytest.mark.parametrize("method", sampled(METHODS, keep=["genetic"]))
 def test_a_search_over_experiments_ends_with_the_truth_beside_it(method, folder, monkeypatch, tmp_path, capsys):
     """Truth: the weight's torque within its interval, by each method; what the experiment needs besides, Psi_m, has no known truth."""
-    few_angles(monkeypatch)
     monkeypatch.setattr(methods, "evolve", partial(genetic.evolve, settings=genetic.Settings(generations=5)))
     truth = ["--truth", str(folder / "truth.toml")]
     experiments = [str(folder / "03-gravity.toml")]

@@ -23,7 +23,6 @@ from sim.columns import log_columns
 from sim.manoeuvres import hop
 from sim.plants import MODELS
 from sim.tracking import tracking
-from tests.angles import few_angles
 from tests.docs.json_page import is_as_documented
 from tests.soak import SOAK
 from twinlaw.command import main
@@ -58,7 +57,6 @@ def poles_once() -> Iterator[None]:
                 known[key] = table_poles(bound, table, arithmetic)
             return known[key]
 
-        few_angles(patch)  # `ran`, a process of its own, has looked at all
         patch.setattr(verify, "table_poles", poles)
         yield
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.angles import few_angles
 from twinlaw.command import main
 from twinlaw.verbs import design, simulate
 from twinlaw.workflows.chain.designing import design_controller
@@ -17,7 +16,6 @@ from twinlaw.workflows.chain.designing import design_controller
 def designed_once():
     """The controller of the one plant file here is designed for the first test that asks for it."""
     with pytest.MonkeyPatch.context() as patch:
-        few_angles(patch)
         once = cache(design_controller)
         for verb in (design, simulate):
             patch.setattr(verb, "design_controller", once)

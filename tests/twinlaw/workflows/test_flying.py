@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-from controllers.loading import load
 from tests.own_plants import SUSPENSION
-from twinlaw.command import main
+from twinlaw import design, load
 from twinlaw.workflows.chain.flying import halved_step
-from twinlaw.workflows.reading import load_bound
 
 DESIGN = """
 [design]
@@ -26,6 +24,6 @@ def test_the_error_of_the_steps_is_not_what_float32_loses(tmp_path: Path) -> Non
     """
     plant = SUSPENSION.write(tmp_path, "suspension")
     plant.write_text(plant.read_text() + DESIGN)
-    assert main(["design", "--plant", str(plant), "--out", str(tmp_path)]) == 0
-    error = halved_step(load_bound(plant), load(tmp_path / "controller.json")[1])
+    suspension = load(plant)
+    error = halved_step(suspension, design(suspension).table)
     assert 0.0 < error.estimate.max() < 2.5e-8
