@@ -21,6 +21,7 @@ from sim.columns import log_columns
 from sim.simulate import simulate
 from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
 from tests.diagnosis.nominal import nominal_fit
+from tests.soak import SOAK
 from tests.test_project import ROOT
 
 STEP_V = 0.2
@@ -36,7 +37,7 @@ def test_steps_of_an_input_are_found_near_their_size() -> None:
 def test_steps_of_an_input_that_no_rotor_stands_behind_are_found() -> None:
     # Truth: a motor, whose voltage moves a current and that the shaft, gets it rounded to 0.1 V; the current settles within 1 ms of a row.
     motor = bind(load_plant(ROOT / "plants" / "dc_motor" / "plant.toml"))
-    t_s = np.arange(0.0, 40.0, 0.02)
+    t_s = np.arange(0.0, 40.0 if SOAK else 20.0, 0.02)
     rates, phases = np.random.default_rng(7).uniform((0.5, 0.0), (6.0, 6.3), (5, 2)).T
     u = 0.5 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)[:, None]
     rig = with_effects(motor, {"input.quantization": {"q": 0.1}})
@@ -49,7 +50,7 @@ def test_steps_of_an_input_that_no_rotor_stands_behind_are_found() -> None:
 def test_steps_of_a_command_that_takes_a_hundredth_of_its_range_are_found() -> None:
     # Truth: a drone whose torque command may go to 1 and goes to 0.01 gets it rounded to 0.003: a step smaller than any of the whole range.
     drone = bind(load_plant(ROOT / "plants" / "antx_2dof_drone.toml"))
-    t_s = np.arange(0.0, 20.0, 0.004)
+    t_s = np.arange(0.0, 20.0 if SOAK else 10.0, 0.004)
     rates, phases = np.random.default_rng(7).uniform((0.5, 0.0), (6.0, 6.3), (5, 2)).T
     u = 0.003 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)[:, None]
     rig = with_effects(drone, {"input.quantization": {"q": 0.003}})

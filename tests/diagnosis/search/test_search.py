@@ -24,6 +24,7 @@ from sim.bind import BoundPlant
 from sim.effect import Values
 from tests.diagnosis.conftest import Fly
 from tests.diagnosis.nominal import nominal_fit
+from tests.soak import SOAK
 
 STEP_V, OFFSET_RAD = 0.107565, -0.0046
 FINELY = 2e-5
@@ -40,7 +41,7 @@ def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> FittedHyp
 def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, fly: Fly) -> None:
     # Rounded commands of 100 steps shift where they round with a step 1e-4 off, which costs 100 nats and bends all else.
     truth = {"main_input.quantization": {"q": STEP_V, "h": 0.0, "s": 0.0}, "psi_sensor.offset": {"offset": OFFSET_RAD}}
-    case = make_case(effect_library(plant), [fly(41, truth, 15.0, air=False)])
+    case = make_case(effect_library(plant), [fly(41, truth, 15.0 if SOAK else 10.0, air=False)])
     nominal = nominal_fit(case)
     off = {**truth, "main_input.quantization": {"q": STEP_V * (1.0 + 7e-4), "h": 0.0, "s": 0.0}}
     end: FittedHypothesis | None = fitted(case, nominal, off)

@@ -35,6 +35,13 @@ def test_a_column_that_is_turned_is_refused_or_doubted_and_no_honest_one() -> No
         demand_columns(arm(), {"a": replace(log, y=-log.y)})
 
 
+def test_commands_a_row_late_are_refused() -> None:
+    """Truth: each command stands in the row after its own; one a second is 2 V larger, which a lag does not make up for."""
+    log = arm_log(seconds=16.0, kick_V=2.0)
+    with pytest.raises(BadInput, match="u_V stands one row late"):
+        demand_columns(arm(), {"a": replace(log, u=np.concatenate([log.u[:1], log.u[:-1]]))})
+
+
 def test_an_input_whose_sign_turns_beside_the_rows_in_which_most_moves_is_refused_too() -> None:
     """Truth: of 42 s of an arm, of which the end tells least, the input is logged as -u from 41 s on."""
     log = arm_log(seconds=42.0)
