@@ -26,6 +26,10 @@ _HEAD = (
 )
 _LAW_CYCLES = Field("law_cycles", U32, "core cycles", "duration of the last step of the law")
 _TICK = Field("tick", U32, "1", "control ticks since the start")
+_ARM = (
+    Field("mode", U8, "mode", "wanted mode"),
+    Field("digest_head", U8, "1", "first bytes of the expected table digest", count=8),
+)
 _MISMATCHES = Field("mismatches", U32, "1", "outputs that differ from the expected bits")
 _IDENTITY = (
     Field("schema_hash", U8, "1", "hash of this protocol's declaration", count=8),
@@ -178,55 +182,30 @@ def _fields_of(loops: tuple[Loop, ...]) -> _LoopFields:
     )
 
 
+def _request(name: str, code: int, meaning: str, *fields: Field) -> Message:
+    return Message(name, code, True, meaning, fields)
+
+
 def _to_board(fields: _LoopFields) -> tuple[Message, ...]:
+    who = "Who are you? Starts a session: sequence numbers continue from this frame."
+    arm = "Arm in a mode; refused unless the table is the expected one. Repeating it changes nothing."
+    sample = (
+        "One sample in host-in-the-loop mode: exactly one step of the law; a repeated frame is answered from memory."
+    )
+    self_test = "Ask for the result of the law's self-test, which the board runs once at its start."
+    reset = "In host-in-the-loop mode: start the law anew, at rest at these angles."
     return (
-        Message("IDENTIFY", 0x01, True, "Who are you? Starts a session: sequence numbers continue from this frame."),
-        Message(
-            "ARM",
-            0x02,
-            True,
-            "Arm in a mode; refused unless the table is the expected one. Repeating it changes nothing.",
-            (
-                Field("mode", U8, "mode", "wanted mode"),
-                Field("digest_head", U8, "1", "first bytes of the expected table digest", count=8),
-            ),
+        _request("IDENTIFY", 0x01, who),
+        _request("ARM", 0x02, arm, *_ARM),
+        _request("DISARM", 0x03, "Power stage off at once; obeyed in any state and order."),
+        _request(
+            "REFERENCE", 0x04, "References while flying; the latest wins, none is acknowledged.", *fields.references
         ),
-        Message("DISARM", 0x03, True, "Power stage off at once; obeyed in any state and order."),
-        Message(
-            "REFERENCE",
-            0x04,
-            True,
-            "References while flying; the latest wins, none is acknowledged.",
-            fields.references,
-        ),
-        Message(
-            "SAMPLE",
-            0x05,
-            True,
-            "One sample in host-in-the-loop mode: exactly one step of the law; a repeated frame is answered from memory.",
-            (*fields.references, *fields.angles),
-        ),
-        Message("GET_COUNTERS", 0x06, True, "Ask for COUNTERS."),
-        Message(
-            "SELF_TEST",
-            0x07,
-            True,
-            "Ask for the result of the law's self-test, which the board runs once at its start.",
-        ),
-        Message(
-            "PRESET",
-            0x08,
-            True,
-            "Declare what the encoders read now; refused while armed.",
-            fields.counts,
-        ),
-        Message(
-            "RESET_LAW",
-            0x09,
-            True,
-            "In host-in-the-loop mode: start the law anew, at rest at these angles.",
-            fields.angles,
-        ),
+        _request("SAMPLE", 0x05, sample, *fields.references, *fields.angles),
+        _request("GET_COUNTERS", 0x06, "Ask for COUNTERS."),
+        _request("SELF_TEST", 0x07, self_test),
+        _request("PRESET", 0x08, "Declare what the encoders read now; refused while armed.", *fields.counts),
+        _request("RESET_LAW", 0x09, reset, *fields.angles),
     )
 
 
