@@ -9,6 +9,7 @@ An input's may be two in a row, as the current of a winding and the speed behind
 
 from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import Any
 
 import sympy
 
@@ -32,24 +33,24 @@ def effects(model: Model) -> Iterator[Effect]:
         rotor_place = model.places.driven_by(entry.variable)
         immediate = bool(rotor_place) and model.places.rotors[rotor_place].drive is None
         yield _lag(
-            f"{place}.lag",
-            f"lag of {entry.variable}",
             column,
             0.02,
-            "The driver or the motor's winding follows its command with a lag.",
-            "inductance of the winding, L/R",
-            {f"{place}.delay": LATE} | ({f"{rotor_place}.lag": SAME} if immediate else {}),
             UNSEEN_LOSSES,
+            name=f"{place}.lag",
+            depends=f"lag of {entry.variable}",
+            story="The driver or the motor's winding follows its command with a lag.",
+            source="inductance of the winding, L/R",
+            twins={f"{place}.delay": LATE} | ({f"{rotor_place}.lag": SAME} if immediate else {}),
         )
         if immediate:
             yield _lag(
-                f"{rotor_place}.lag",
-                f"lag of thrust({entry.variable})",
                 column,
                 0.05,
-                "The rotor takes its time to reach the speed that the command asks for.",
-                "inertia of the rotor",
-                {f"{place}.lag": SAME, f"{place}.delay": LATE},
+                name=f"{rotor_place}.lag",
+                depends=f"lag of thrust({entry.variable})",
+                story="The rotor takes its time to reach the speed that the command asks for.",
+                source="inertia of the rotor",
+                twins={f"{place}.lag": SAME, f"{place}.delay": LATE},
                 copy_of=f"{place}.lag",
             )
     before = [f"{place}.lag" for place in (*model.places.inputs, *model.places.rotors)]
@@ -57,31 +58,17 @@ def effects(model: Model) -> Iterator[Effect]:
         yield _of_sensor(model, place, sensor, before)
 
 
-def _lag(
-    name: str,
-    depends: str,
-    column: int,
-    reference: float,
-    story: str,
-    source: str,
-    twins: dict[str, str],
-    unlikely: Unlikely | None = None,
-    copy_of: str = "",
-) -> Effect:
-    tau = EffectParameter("tau", "s", 0.0, 2.0, reference, 0.0, (0.02, 0.1, 0.3), role=Role.LATENESS, unlikely=unlikely)
+def _lag(column: int, usual_s: float, unlikely: Unlikely | None = None, **told: Any) -> Effect:
+    """Eq (2) on the input of this column; `told` are the effect's own name, words and twins."""
+    tau = EffectParameter("tau", "s", 0.0, 2.0, usual_s, 0.0, (0.02, 0.1, 0.3), role=Role.LATENESS, unlikely=unlikely)
     # Two equal lags have one answer more than those of a quotient by their difference.
     second = EffectParameter("b", "1", 0.0, 0.45, 0.0, refining=True)
     return Effect(
-        name=name,
-        depends=depends,
         parameters=(tau, second),
         equation="(1 - b) tau w' = u - w, b tau v' = w - v, v instead of u",
-        story=story,
-        source=source,
         prior=COMMON,
         on_input=lambda values: Lag(column, values["tau"], values.get("b", 0.0)),
-        twins=twins,
-        copy_of=copy_of,
+        **told,
     )
 
 
