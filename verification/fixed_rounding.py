@@ -4,6 +4,7 @@ As rounding.py for float32, over the same declared ranges and slices of Psi, wit
 The real law has the table's own numbers; both start from the same state and inputs.
 """
 
+from itertools import starmap
 from typing import Any
 
 from codegen.fixed.constants import FixedAxis, FixedLaw, fixed_constants
@@ -57,34 +58,17 @@ def restricted_voltages(table: ControllerTable, words: ErrorWords[Any], ranges: 
         for axis, state, reference in zip(law.axes, states, references, strict=True)
     ]
     psi_ref = region(law, words, filtered)
-    return tuple(
-        _output(law, axis, words, state, filtered_rad, angle, psi, psi_ref, (limits_rad, formats.angle_places))
-        for axis, state, filtered_rad, angle, limits_rad in zip(
-            law.axes, states, filtered, angles, ranges.errors_rad, strict=True
+
+    def output_V(axis: FixedAxis[Any], state: Any, filtered_rad: Any, angle: Any, limits_rad: tuple[Range, ...]) -> Any:
+        kept = within_ranges(law, axis, words, state)
+        e_rad = tuple(
+            _restricted(words, e, limits, formats.angle_places)
+            for e, limits in zip(differences(axis, words, kept, filtered_rad, angle), limits_rad, strict=True)
         )
-    )
+        move_V = words.whole(move(axis, words, kept, e_rad, psi), axis.residue_places)
+        return drive(law, axis, words, kept, e_rad, move_V, feedforward(axis, words, psi_ref))[1]
 
-
-def _output(
-    law: FixedLaw[Any],
-    axis: FixedAxis[Any],
-    words: ErrorWords[Any],
-    state: Any,
-    filtered_rad: Any,
-    angle_rad: Any,
-    psi: tuple[Any, ...],
-    psi_ref: tuple[Any, ...],
-    allowed: tuple[tuple[Range, ...], int],
-) -> Any:
-    """The limited voltage of one axis."""
-    limits_rad, places = allowed
-    kept = within_ranges(law, axis, words, state)
-    e_rad = tuple(
-        words.restricted(e, limit[0] * 2.0**places, limit[1] * 2.0**places)
-        for e, limit in zip(differences(axis, words, kept, filtered_rad, angle_rad), limits_rad, strict=True)
-    )
-    move_V = words.whole(move(axis, words, kept, e_rad, psi), axis.residue_places)
-    return drive(law, axis, words, kept, e_rad, move_V, feedforward(axis, words, psi_ref))[1]
+    return tuple(starmap(output_V, zip(law.axes, states, filtered, angles, ranges.errors_rad, strict=True)))
 
 
 def _state(words: ErrorWords[Any], formats: LawFormats, declared: Any, reference_places: int) -> Any:
@@ -96,4 +80,12 @@ def _state(words: ErrorWords[Any], formats: LawFormats, declared: Any, reference
 
 
 def _words(words: ErrorWords[Any], limits: Range, places: int) -> Any:
-    return words.within(limits[0] * 2.0**places, limits[1] * 2.0**places)
+    return words.within(*_whole(limits, places))
+
+
+def _restricted(words: ErrorWords[Any], word: Any, limits: Range, places: int) -> Any:
+    return words.restricted(word, *_whole(limits, places))
+
+
+def _whole(limits: Range, places: int) -> Range:
+    return limits[0] * 2.0**places, limits[1] * 2.0**places
