@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from records.loops import Loop
 from records.text.units import shown, unit_of
 from records.text.zeros import unsigned_zeros
 from toolchain.templates import text_templates
@@ -48,50 +49,65 @@ class Where:
 
 def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
     """The page; the same comparison gives the same bytes."""
-    loops = rows[0].loops
-    effects = tables.effect_rows(rows, where.spread_figure)
-    return (
-        text_templates(TEMPLATES)
-        .get_template("controllers.md.j2")
-        .render(
-            command=where.command,
-            out=where.out,
-            stem=where.stem,
-            open_loop=where.open_loop,
-            is_papers=where.is_papers,
-            of_input="voltage" if where.is_papers else "input",
-            loops=" and ".join(f"{loop.axis} ({loop.output}, by {loop.input})" for loop in loops),
-            whose={1: "the one axis", 2: "both axes"}.get(len(loops), "all axes"),
-            axes_iae=" / ".join(f"{loop.axis} in {shown(loop.output)[0]} s" for loop in loops),
-            refused=[f"`{name}`: {why}" for name, why in told.refused.items()],
-            unsettled=[f"`{name}`: {why}" for name, why in told.unsettled.items()],
-            beyond=told.beyond,
-            rows=[
-                {
-                    **{name: getattr(row.row, name) for name in ("name", "title", "source", "plants")},
-                    "digest": row.digest,
-                }
-                for row in rows
-            ],
-            notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
-            cost=_markdown(tables.cost_heading(rows), tables.cost_rows(rows)),
-            figures=_figures(rows, where.titles),
-            eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(told.eq26)) if told.eq26 else "",
-            angles=ANGLES,
-            runs=told.wanted.trial.runs,
-            seed=told.wanted.trial.seed,
-            spread=[
-                (loop.axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, loop)))
-                for loop in loops
-            ],
-            filters=[(loop.axis.capitalize(), _markdown(*tables.filter_rows(rows, loop))) for loop in loops],
-            filtered_verdict=filtered_verdict(rows),
-            filtered=min(FILTERED, told.wanted.trial.runs),
-            effects=_markdown(*effects),
-            verdict=verdict(rows),
-            quality=_markdown(tables.QUALITY_HEADING, tables.quality_rows(rows)),
-        )
+    template = text_templates(TEMPLATES).get_template("controllers.md.j2")
+    return template.render(
+        **{name: getattr(where, name) for name in ("command", "out", "stem", "open_loop", "is_papers")},
+        of_input="voltage" if where.is_papers else "input",
+        figures=_figures(rows, where.titles),
+        effects=_markdown(*tables.effect_rows(rows, where.spread_figure)),
+        **_words_of(rows[0].loops),
+        **_conditions(told),
+        **_controllers(rows),
+        **_by_loop(rows),
     )
+
+
+def _words_of(loops: Sequence[Loop]) -> dict[str, str]:
+    """How the page names the loops."""
+    return {
+        "loops": " and ".join(f"{loop.axis} ({loop.output}, by {loop.input})" for loop in loops),
+        "whose": {1: "the one axis", 2: "both axes"}.get(len(loops), "all axes"),
+        "axes_iae": " / ".join(f"{loop.axis} in {shown(loop.output)[0]} s" for loop in loops),
+    }
+
+
+def _conditions(told: Told) -> dict[str, Any]:
+    """What was compared under which conditions, and what was left out of it."""
+    trial = told.wanted.trial
+    return {
+        "refused": [f"`{name}`: {why}" for name, why in told.refused.items()],
+        "unsettled": [f"`{name}`: {why}" for name, why in told.unsettled.items()],
+        "beyond": told.beyond,
+        "eq26": _markdown(tables.EQ26_HEADING, tables.eq26_rows(told.eq26)) if told.eq26 else "",
+        "angles": ANGLES,
+        "runs": trial.runs,
+        "seed": trial.seed,
+        "filtered": min(FILTERED, trial.runs),
+    }
+
+
+def _controllers(rows: Sequence[Compared]) -> dict[str, Any]:
+    """Who was compared, what each costs, and who leads."""
+    shown_of_a_row = ("name", "title", "source", "plants")
+    return {
+        "rows": [{**{name: getattr(row.row, name) for name in shown_of_a_row}, "digest": row.digest} for row in rows],
+        "notes": [f"**`{row.row.name}`** {row.row.note}" for row in rows],
+        "cost": _markdown(tables.cost_heading(rows), tables.cost_rows(rows)),
+        "quality": _markdown(tables.QUALITY_HEADING, tables.quality_rows(rows)),
+        "verdict": verdict(rows),
+        "filtered_verdict": filtered_verdict(rows),
+    }
+
+
+def _by_loop(rows: Sequence[Compared]) -> dict[str, list[tuple[str, str]]]:
+    """Tables of spread plants and of filters, a loop each."""
+    loops = {loop.axis.capitalize(): loop for loop in rows[0].loops}
+    return {
+        "spread": [
+            (axis, _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, loop))) for axis, loop in loops.items()
+        ],
+        "filters": [(axis, _markdown(*tables.filter_rows(rows, loop))) for axis, loop in loops.items()],
+    }
 
 
 def _figures(rows: Sequence[Compared], titles: Mapping[str, str]) -> list[dict[str, Any]]:
