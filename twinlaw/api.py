@@ -31,7 +31,7 @@ from twinlaw.cli.options import plant_file
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.designing import Designed, design_other_on, design_plant, table_poles
 from twinlaw.workflows.chain.flying import fly_double, fly_host, stirred
-from twinlaw.workflows.chain.verifying import STEPS, verify_table
+from twinlaw.workflows.chain.verifying import STEPS, Built, verify_table
 from twinlaw.workflows.diagnose.material import material_of
 from twinlaw.workflows.identify.by_time import Wishes
 from twinlaw.workflows.identify.by_time import identify as identified
@@ -75,7 +75,7 @@ def verify(plant: BoundPlant, table: ControllerTable, arithmetic: str = "float32
     poles = table_poles(plant, table, arithmetic)
     demand_drivable(table)
     image = build_firmware(law, loops=table.loops)
-    return verify_table(plant, table, poles, law, image, steps=steps, arithmetic=arithmetic)
+    return verify_table(plant, table, poles, Built(arithmetic, law, image), steps=steps)
 
 
 def fly(plant: BoundPlant, table: FlownTable | None = None, on: str = "double", arithmetic: str = "float32") -> RunLog:

@@ -27,7 +27,7 @@ from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.causes import cause
 from twinlaw.workflows.chain.designing import Designed, design_controller, poles_of, roll_off_trade
-from twinlaw.workflows.chain.verifying import demand, verify_table
+from twinlaw.workflows.chain.verifying import Built, demand, verify_table
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,9 +56,8 @@ def run(chosen: argparse.Namespace) -> int:
     write_atomic(out / "controller.json", table_text(designed.table))
     law = generate_sources(designed.table, chosen.arithmetic, out / "generated")
     image = build_image(designed.table, law, out)
-    verification = verify_table(
-        designed.bound, designed.table, poles_of(designed.report), law, image, arithmetic=chosen.arithmetic
-    )
+    built = Built(chosen.arithmetic, law, image)
+    verification = verify_table(designed.bound, designed.table, poles_of(designed.report), built)
     write_atomic(out / "verification.json", verification_text(verification))
     demand(verification)
     flight = _flown(designed, chosen)

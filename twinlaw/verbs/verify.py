@@ -21,7 +21,7 @@ from twinlaw.pages.run.checks import verification_rows
 from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.designing import demand_table_of, table_poles
 from twinlaw.workflows.chain.proving import with_proofs
-from twinlaw.workflows.chain.verifying import STEPS, demand, motion_of, recorded_replay, verify_table
+from twinlaw.workflows.chain.verifying import STEPS, Built, demand, motion_of, recorded_replay, verify_table
 from twinlaw.workflows.reading import load_bound
 from verification.proofs import Subject
 
@@ -57,9 +57,8 @@ def run(chosen: argparse.Namespace) -> int:
     poles = table_poles(bound, table, chosen.arithmetic)
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
     image = build_image(table, law, chosen.out, board)
-    verification = verify_table(
-        bound, table, poles, law, image, [replay for replay, _ in recorded], chosen.steps, chosen.arithmetic
-    )
+    built = Built(chosen.arithmetic, law, image)
+    verification = verify_table(bound, table, poles, built, [replay for replay, _ in recorded], chosen.steps)
     if chosen.proofs:
         motion = motion_of(bound, table)
         generated = {**law, **protocol_source(protocol_of(table.loops))}

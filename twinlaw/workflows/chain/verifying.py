@@ -42,30 +42,37 @@ STEPS = 100_000
 TICK_RESERVE_S = 120e-6
 
 
+@dataclass(frozen=True)
+class Built:
+    """The C of a table's law by file name, and its image, in one arithmetic."""
+
+    arithmetic: str
+    law: Mapping[str, str]
+    image: FirmwareImage
+
+
 def verify_table(
     bound: BoundPlant,
     table: ControllerTable,
     poles: Sequence[PoleMigration],
-    law: Mapping[str, str],
-    image: FirmwareImage,
+    built: Built,
     recorded: Sequence[Replay] = (),
     steps: int = STEPS,
-    arithmetic: str = "float32",
 ) -> Verification:
-    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`."""
-    checks = {arithmetic: _check(bound, table, arithmetic, law, image, recorded, steps)}
+    """All checks of one table in every arithmetic; the `recorded` logs are in that of `built`."""
+    checks = {built.arithmetic: _check(bound, table, built, recorded, steps)}
     for other in ARITHMETICS:
         if other not in checks:
             texts = generate_law(table, other)
             with stage(f"building the firmware in {other} as well"):
-                built = build_firmware(texts, board=image.board, loops=table.loops)
-            checks[other] = _check(bound, table, other, texts, built, (), steps)
+                image = build_firmware(texts, board=built.image.board, loops=table.loops)
+            checks[other] = _check(bound, table, Built(other, texts, image), (), steps)
     ordered = [checks[name] for name in ARITHMETICS]
     return Verification(
         table_digest=table.digest,
         equality=tuple(row for check in ordered for row in check.equality),
         self_tests=tuple(row for check in ordered for row in check.self_tests),
-        rounding=checks[arithmetic].rounding,
+        rounding=checks[built.arithmetic].rounding,
         poles=tuple(poles),
         target=tuple(check.cost for check in ordered if check.cost is not None),
         roundings={name: checks[name].rounding for name in ARITHMETICS},
@@ -82,18 +89,11 @@ class _Check:
     cost: TargetCost | None
 
 
-def _check(
-    bound: BoundPlant,
-    table: ControllerTable,
-    arithmetic: str,
-    law: Mapping[str, str],
-    image: FirmwareImage,
-    recorded: Sequence[Replay],
-    steps: int,
-) -> _Check:
+def _check(bound: BoundPlant, table: ControllerTable, built: Built, recorded: Sequence[Replay], steps: int) -> _Check:
     """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
-    chosen, loops = ARITHMETICS[arithmetic], table.loops
-    twin, host = chosen.twin(table), HostLaw(law, arithmetic, loops=loops)
+    arithmetic, image, loops = built.arithmetic, built.image, table.loops
+    chosen = ARITHMETICS[arithmetic]
+    twin, host = chosen.twin(table), HostLaw(built.law, arithmetic, loops=loops)
     target = _on_target(image, arithmetic, table)
     stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
     pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), (host, target)]
