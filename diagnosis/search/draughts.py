@@ -1,17 +1,26 @@
-"""Torques that come and go: noise of the plant, and told as a gust where nothing else is missing and they are more than a rig's usual."""
+"""Torques that come and go: noise of the plant, and told as a gust where nothing else is missing and they are more than a rig's usual.
+
+White noise w of an axis' speed, in rad/s per sqrt(s), is the gust of the shortest memory T: what is slower feels no difference where
+
+(1)  sigma = J w / sqrt(2 T)        J: the axis' inertia where the logs begin
+"""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
+import numpy as np
+import sympy
+
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, has_memory, noise_on
 from records.reasons import Decision
-from sim.effect import Role
+from sim.bind import named_values
+from sim.effect import Effect, Role
 
 STILL_ROUNDS = 6
 
@@ -26,16 +35,37 @@ class Draught:
 
 def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tuple[Decision, ...]]:
     """The strongest gust of the plant's noise, `retuned` within its spread, where it is worth telling; and the rule that says so."""
-    shares = gust_shares(case, retuned.fit.hypothesis)
+    slow, white = gust_shares(case, retuned.fit.hypothesis), white_shares(case, retuned.fit.hypothesis)
+    shares = white | slow
     if not shares:
         return None, ()
     name = max(shares, key=lambda name: shares[name])
     told = shares[name] >= decisions.USUAL_GUST
     rule = decided("draught", name, shares[name], decisions.USUAL_GUST, "a gust" if told else "usual noise")
-    quiet = without_gusts(case, retuned, [name]) if told else None
-    if quiet is None:
+    if not told:
         return None, (rule,)
-    return Draught(FittedHypothesis((name,), retuned.fit, retuned.evidence), quiet), (rule,)
+    return _of_memory(case, retuned, name) if name in slow else _of_white(case, retuned, name, shares[name]), (rule,)
+
+
+def _of_memory(case: Case, retuned: FittedHypothesis, name: str) -> Draught | None:
+    quiet = without_gusts(case, retuned, [name])
+    return None if quiet is None else Draught(FittedHypothesis((name,), retuned.fit, retuned.evidence), quiet)
+
+
+def _of_white(case: Case, retuned: FittedHypothesis, name: str, share: float) -> Draught | None:
+    """The plant whose white noise is the usual at most, with and without the rest as a gust; None where neither follows the logs."""
+    hypothesis, effect, usual = retuned.fit.hypothesis, case.library.effects[name], decisions.USUAL_GUST
+    axis = next(axis for axis in range(len(hypothesis.process_noise)) if noise_on(case, axis) is effect)
+    process_noise = hypothesis.process_noise.copy()
+    process_noise[axis] += np.log10(usual / share)
+    as_usual = replace(hypothesis, process_noise=process_noise)
+    size = case.library.bound.model.places.axes[effect.place].torque_size * float(np.sqrt(share**2 - usual**2))
+    rest = {effect.symbol(Role.STRENGTH): size, effect.symbol(Role.MEMORY): _shortest_s(effect)}
+    quiet = fit(case, as_usual, rounds=STILL_ROUNDS)
+    gusty = fit(case, as_usual.with_effects({**hypothesis.effects, name: rest}), rounds=STILL_ROUNDS)
+    if quiet is None or gusty is None:
+        return None
+    return Draught(FittedHypothesis((name,), gusty, evidence(gusty, case.library.effects)), as_fitted(case, quiet))
 
 
 def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
@@ -46,6 +76,24 @@ def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
         for name in hypothesis.effects
         if effects[name].is_noise
     }
+
+
+def white_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
+    """The same of each axis' white noise as a gust, by eq (1)."""
+    model, p, found = case.library.bound.model, case.library.bound.p.copy(), dict[str, float]()
+    p[case.free] += hypothesis.theta * case.sd
+    start = dict(zip(model.states, case.flights[0].x0.tolist(), strict=False))  # without states that effects brought
+    for index, axis in enumerate(model.axes):
+        effect = noise_on(case, index)
+        if effect is not None:
+            inertia = float(sympy.sympify(axis.inertia).xreplace({**named_values(model, p), **start}))
+            sigma = inertia * 10.0 ** hypothesis.process_noise[index] / float(np.sqrt(2.0 * _shortest_s(effect)))
+            found[effect.name] = sigma / model.places.axes[axis.name].torque_size
+    return found
+
+
+def _shortest_s(gust: Effect) -> float:
+    return gust.parameter[gust.symbol(Role.MEMORY)].lower
 
 
 def without_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
