@@ -113,6 +113,7 @@ def _ahead_nats(told: ModelComparison, named: Array, curve: float) -> float | No
 
 
 def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, float]) -> ModelComparison:
+    """All of them in nats. What effects without a name gain beside the likeliest name they would gain beside the curve."""
     least = min(ahead.values(), default=0.0)
     nominal, effects, curve = explanations.nominal, explanations.library.effects, explanations.curve
     first = max(explanations.named, key=explanations.evidence, default=nominal)
@@ -133,7 +134,7 @@ def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, flo
         formed_nats=max(found - _read_off(explanations, first).evidence, 0.0),
         left_nats=explanations.left_nats,
         parameters_nats=None if explanations.retune is None else explanations.retune - nominal.evidence,
-        curve_nats=None if curve is None else curve.evidence - nominal.evidence,
+        curve_nats=None if curve is None else curve.evidence - nominal.evidence + found - first.evidence,
         curve_ahead_nats=0.0 if curve is None else curve.ahead_nats,
         parameters_ahead_nats=0.0 if explanations.beyond is None else ahead.get(explanations.beyond, least),
     )

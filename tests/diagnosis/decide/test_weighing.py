@@ -75,6 +75,17 @@ def test_what_a_free_curve_explains_better_has_no_name(gained: float, nameless: 
     assert told["free_curve_foresees"] == (1e9, 0.0, "predicts better")
 
 
+def test_what_earns_no_name_counts_beside_a_free_curve_as_beside_the_likeliest() -> None:
+    """Truth: friction has 400 nats alone and 2400 beside what is dropped; a curve of 700 alone has 2700 beside the same, more by 300."""
+    named = explanations(RUB)
+    nothing = np.zeros(0)
+    curve = FittedCurve(None, nothing, nothing, plain_linearisation().case, named.nominal.fit, 700.0, 1e9)  # type: ignore[arg-type]
+    found = weigh(replace(named, curve=curve, beside={RUB: 2400.0}), {}, None, LAW)
+    assert found.comparison is not None
+    assert (found.comparison.curve_nats, found.comparison.gain_nats) == (2700.0, 2400.0)
+    assert found.nameless
+
+
 def test_parameters_that_leave_their_spread_are_paid_in_full() -> None:
     """Truth: five deviations are two beyond the three that are free, half of 2^2 nats, however little of its evidence counts."""
     theta = RUB.fit.hypothesis.theta.copy()
