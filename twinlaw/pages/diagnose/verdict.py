@@ -9,7 +9,7 @@ from records.text.units import plain_unit
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
-from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, listed, percent, words
+from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, listed, missed_most, percent, words
 from twinlaw.pages.page import as_sentence
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
@@ -32,6 +32,12 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
         return f"{_NOT_TOLD[diagnosis.verdict]}. {reason_in_words(diagnosis)}"
     if diagnosis.verdict == "no gap":
         tuned = " once its parameters are re-tuned within what it states of them" if lowered(diagnosis) else ""
+        missed = missed_most(diagnosis)
+        if missed is not None:
+            return (
+                f"The plant file explains these logs{tuned} but for noise: nothing that they could show is missing, yet predictions over a "
+                f"second miss {missed}."
+            )
         return f"The plant file explains these logs{tuned}: nothing is missing that they could show."
     if diagnosis.verdict == "cannot tell":
         return "These logs hold too little motion to tell whether the plant file lacks anything."

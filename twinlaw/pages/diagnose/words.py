@@ -162,7 +162,7 @@ def misfits(diagnosis: Diagnosis) -> dict[str, float]:
     return {name: rms / floors[name] for name, rms in shrinkage.rms_after.items() if floors[name]}
 
 
-def _missed(diagnosis: Diagnosis) -> str | None:
+def missed_most(diagnosis: Diagnosis) -> str | None:
     """The output that is missed most on the logs held out, with its misfit; None where all misfits are green."""
     worst, misfit = max(misfits(diagnosis).items(), key=lambda entry: entry[1], default=("", 0.0))
     if misfit <= MISFIT.green:
@@ -173,7 +173,7 @@ def _missed(diagnosis: Diagnosis) -> str | None:
 def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
     """What the chance of a false alarm says."""
     if diagnosis.verdict != "gap" and p > decisions.ALARM:
-        missed = _missed(diagnosis)
+        missed = missed_most(diagnosis)
         usual = (
             "what remains is as small as on a rig that is as the plant file states, with its sensors"
             if missed is None
