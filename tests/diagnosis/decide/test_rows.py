@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,13 +17,17 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
+from identification.runs.rows import trimmed
 from records.errors import BadInput
 from records.log import RunLog
 from tests.diagnosis.arm import arm, arm_log
-from tests.diagnosis.conftest import RUB, Fly
+from tests.diagnosis.conftest import RUB, Fly, without_states
 from tests.plants import bound
 from tests.recorded import recorded
 from tests.soak import SOAK, sampled
+from twinlaw import fly as flown
+from twinlaw import load
+from twinlaw.workflows.new_plant import plant_texts
 
 SECONDS = 6.0
 EFFECTS = [
@@ -63,6 +68,16 @@ def test_columns_in_other_rows_are_refused_by_name(
     log = fly(31, seconds=2.0 * SECONDS if SOAK else SECONDS)
     with pytest.raises(BadInput, match=named):
         told(stateless, logged(log, slip))
+
+
+def test_commands_that_a_motor_s_log_has_a_row_late_are_named_and_made_no_physics(tmp_path: Path) -> None:
+    """Its current follows within a row of 10 ms: another inductance, or inputs that move between rows, make up for a part of it."""
+    for name, text in plant_texts("late_motor", "motor").items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    motor = load(tmp_path / "plant.toml")
+    log = trimmed(flown(motor), 0.0, 10.0)
+    with pytest.raises(BadInput, match="u_V stands one row late in the log"):
+        told(without_states(effect_library(motor)), logged(log, Misplaced((0,), 1)))
 
 
 def test_a_column_of_which_a_short_log_tells_little_is_told_and_not_refused(stateless: EffectLibrary, fly: Fly) -> None:

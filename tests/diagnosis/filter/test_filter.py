@@ -396,7 +396,7 @@ return Model(
 def test_a_pass_is_given_up_that_rattles_in_every_row(tmp_path: Path, events_a_row: float, is_whole: bool) -> None:
     # Truth: 4 zeros a turn, so many turns in a row of 10 ms. Up to 200 events and 2 a row are borne: all of 800, not 3200 in 800 rows.
     turning = replace(TURNING, parameters={**TURNING.parameters, "turn": (50.0 * np.pi * events_a_row, 0.0, "s^-1")})
-    bound = bind(load_plant(turning.write(tmp_path, f"turning_{events_a_row:.0f}")))
+    bound = bind(load_plant(turning.write(tmp_path, "turning")))
     t_s = 0.01 * np.arange(800)
     log = RunLog(log_columns(bound.model), 0.01, "open", t_s, np.ones((800, 1)), np.full((800, 1), 0.5))
     case = make_case(effect_library(bound), [log])

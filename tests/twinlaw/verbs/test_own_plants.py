@@ -178,8 +178,9 @@ def test_a_third_of_a_second_of_a_fast_motor_names_its_dry_friction(tmp_path: Pa
     assert (found.verdict, *found.found) == ("gap", "shaft.coulomb")
 
 
-# Both ask the same of the columns; that `identify` does, tests/twinlaw/workflows/test_columns.py says in every suite.
-@pytest.mark.parametrize("verb", sampled([identify, diagnose], {diagnose}))
+# Of what both ask, tests/diagnosis/decide/test_rows.py and tests/twinlaw/workflows/test_columns.py, in every suite.
+@pytest.mark.soak
+@pytest.mark.parametrize("verb", [identify, diagnose])
 def test_commands_that_a_motor_s_log_has_a_row_late_are_named_and_made_no_physics(
     verb: Callable[..., object], tmp_path: Path
 ) -> None:
