@@ -17,6 +17,7 @@ from recordings.mapping.names import Ambiguous
 from recordings.mapping.source import Source, source
 from recordings.mapping.times import TIME
 from recordings.proposal import proposed
+from recordings.row_order import in_time
 from recordings.signals import Contents, Signal, listed
 from records.errors import BadInput
 from records.log import LOOPS, LogColumns, RunLog, facts_of_sidecar
@@ -56,6 +57,7 @@ def log_of_contents(
 ) -> Imported:
     """What a file holds as a run log of the plant that `columns` describes; `where` names the file. Raises BadInput."""
     _check_columns(mapping, columns)
+    contents = in_time(contents)
     facts = _facts(contents, where, columns)
     of = source(contents, where, mapping.group, mapping.per_turn, mapping.columns.get(TIME))
     found, left_out = _columns(of, mapping, columns)

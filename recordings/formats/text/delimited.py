@@ -3,7 +3,7 @@
 import io
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -79,23 +79,8 @@ def of_text(text: str, asked: TextLayout, where: str) -> Contents:
     signals, unread = _signals(body, layout)
     signals, totals = without_totals(signals)
     singles = {name: Signal(np.asarray(value)) for name, value in layout.singles.items()}
-    signals, turned = _oldest_first(with_clocks(with_clocks_in_front(signals)))
-    return Contents(signals, found=(*told, *totals, *turned), unread=unread, singles=singles)
-
-
-def _oldest_first(signals: Mapping[str, Signal]) -> tuple[dict[str, Signal], tuple[str, ...]]:
-    """The rows turned round where every clock falls all along, as data bases write the newest first, and what is said of it."""
-    clocks = [signals[name] for name in dict.fromkeys(signal.clock for signal in signals.values()) if name]
-    if not clocks or not all(c.values.size > 1 and bool(np.all(np.diff(c.values) < 0.0)) for c in clocks):
-        return dict(signals), ()
-    return {name: _turned(signal) for name, signal in signals.items()}, (
-        "the newest row stands first: rows are turned round",
-    )
-
-
-def _turned(signal: Signal) -> Signal:
-    last = signal.values.size - 1
-    return replace(signal, values=signal.values[::-1], faults={last - row: told for row, told in signal.faults.items()})
+    signals = with_clocks(with_clocks_in_front(signals))
+    return Contents(signals, found=(*told, *totals), unread=unread, singles=singles)
 
 
 def _check_upright(body: Sequence[Line], layout: Layout, where: str) -> None:

@@ -67,6 +67,11 @@ CASES: Mapping[str, tuple[str, dict[str, str]]] = {
     "a matrix of MATLAB": (f"data = [\n{_lines(' ', end=';')}];\n", NO_NAMES),
     "names in single quotes": (",".join(f"'{name}'" for name in NAMES) + "\n" + _lines(), {}),
     "newest first": (HEADER + "\n".join(reversed(_lines().splitlines())), {}),
+    "rows by chance": (HEADER + "\n".join(np.random.default_rng(7).permutation(_lines().splitlines())), {}),
+    "rows in the order of a column": (
+        HEADER + "\n".join(sorted(_lines().splitlines(), key=lambda row: row.split(",")[3])),
+        {},
+    ),
     "times of two zones": (
         f"stamp,{','.join(NAMES[1:])}\n"
         + "".join(

@@ -1,0 +1,65 @@
+"""Rows in the order of their times, where a file has them in another: the newest first, or in the order of another column.
+
+A clock that is set back, ticks that run over and recordings behind one another fall now and then: they stay as they are.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recordings.signals import Contents, Signal
+
+Array = NDArray[np.float64]
+BY_CHANCE = (
+    0.1  # of the rows stand before an older one: by chance half of them do, behind a clock that was set back one in all
+)
+EVEN, EVEN_SHARE = (0.6, 1.6), 0.9  # usual steps that so many of those are at least which putting rows in order makes
+
+
+def in_time(contents: Contents) -> Contents:
+    """The same with its rows in the order of its one clock, and what is said of it; as it is where its clocks differ or tell no order."""
+    clocks = {signal.clock for signal in contents.signals.values() if signal.clock is not None}
+    if len(clocks) != 1:
+        return contents
+    t = contents.signals[clocks.pop()].values
+    told = _disorder(t)
+    if told is None:
+        return contents
+    order = np.argsort(t, kind="stable")
+    return replace(contents, signals=_ordered(contents.signals, order), found=(*contents.found, told))
+
+
+def _disorder(t: Array) -> str | None:
+    """What is to be said of times (n,) that are rows in another order; None where they are none."""
+    if t.ndim != 1 or t.size < 2 or not np.isfinite(t).all():
+        return None
+    falls = np.diff(t) < 0.0
+    order = np.argsort(t, kind="stable")
+    steps = np.diff(t[order])
+    if not falls.any() or not (steps > 0.0).all():
+        return None
+    if falls.all():
+        return "the newest row stands first: rows are turned round"
+    moved = int(np.count_nonzero(order != np.arange(t.size)))
+    made = np.diff(order) != 1
+    low, high = (share * float(np.median(steps)) for share in EVEN)
+    even = float(np.mean((steps[made] >= low) & (steps[made] <= high))) >= EVEN_SHARE
+    if even and falls.mean() >= BY_CHANCE:
+        return f"{moved} rows stand in another order than their times: put in order"
+    return None
+
+
+def _ordered(signals: Mapping[str, Signal], order: NDArray[np.int64]) -> dict[str, Signal]:
+    places = {int(row): place for place, row in enumerate(order)}
+    return {
+        name: replace(
+            signal,
+            values=signal.values[order],
+            faults={places[row]: told for row, told in signal.faults.items() if row in places},
+        )
+        if len(signal.values) == len(order)
+        else signal
+        for name, signal in signals.items()
+    }
