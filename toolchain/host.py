@@ -118,8 +118,9 @@ def build_shared(
     *,
     include_dirs: Sequence[Path] = (),
     flags: Sequence[str] = STRICT_FLOAT_FLAGS,
+    of: str = "",
 ) -> Path:
-    """Compile `sources` into a shared library and return its path; the same content is compiled once only.
+    """Compile `sources` into a shared library and return its path; the same content is compiled once only, whoever it is `of`.
 
     Headers in `include_dirs` count as content too. Any number of processes may ask at once: each compiles on its own, and a library
     appears whole under the name of its content. Raises BadInput when the compiler refuses.
@@ -129,6 +130,7 @@ def build_shared(
     if is_whole(target):
         return target
     target.parent.mkdir(parents=True, exist_ok=True)
+    what = f"{name} of {of}" if of else name
     with tempfile.TemporaryDirectory(dir=target.parent) as work:
         files = [as_file(source, Path(work)) for source in sources]
         includes = [f"-I{folder}" for folder in (*include_dirs, Path(work))]
@@ -136,17 +138,17 @@ def build_shared(
         compiled = [str(path) for path in files if path.suffix == ".c"]
         command = ["cc", *_LIBRARY_FLAGS, *flags, *includes, *compiled, "-o", str(built)]
         try:
-            run_zig([*command, *_linked()], name)
+            run_zig([*command, *_linked()], what)
         except BadInput as refused:
             if _NO_RUNTIME_S.search(refused.got):
                 raise
             # A processor may lack what another has: zig's own runtime holds that, or tells the error in full.
-            run_zig([*command, "-Wl,-z,defs", "-lm"], name)
+            run_zig([*command, "-Wl,-z,defs", "-lm"], what)
         if content_digest(sources, include_dirs, flags) == digest:
             built.replace(target)
             return target
     # A file was changed while the compiler read it: what came out bears no name that would be true.
-    return build_shared(name, sources, include_dirs=include_dirs, flags=flags)
+    return build_shared(name, sources, include_dirs=include_dirs, flags=flags, of=of)
 
 
 def _linked() -> Sequence[str]:

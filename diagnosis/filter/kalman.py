@@ -310,7 +310,7 @@ def equations_text(model: Model) -> CText:
 def build_filter(name: str, equations: CText) -> Path:
     """Compile the filter of the model called `name`; returns the library's path, raises BadInput when the compiler refuses."""
     made = (equations, CText("sincos_coefficients.h", sincos_header()))
-    return build_shared(f"filter-{name}", (*made, *SOURCES, *HEADERS), flags=FLAGS)
+    return build_shared("filter", (*made, *SOURCES, *HEADERS), flags=FLAGS, of=name)
 
 
 def open_filter(path: Path, sizes: Mapping[str, int], axes: tuple[str, ...], stated_rad_s: float = 0.0) -> Filter:

@@ -51,7 +51,7 @@ def model_header(model: Model) -> str:
     }
     return "\n".join(
         [
-            f"/* Equations of {model.name}, generated; see sim/plants. */",
+            "/* Equations of a plant, generated; see sim/plants. Its name is not told: all plants of these share what is compiled. */",
             *(f"#define {name} {value}" for name, value in sizes.items()),
             *_index_tables(model),
             *_pattern_tables(model),

@@ -63,13 +63,13 @@ class Kernel:
 @lru_cache(maxsize=64)
 def kernel(model: Model) -> Kernel:
     """The kernel of `model`, compiled once for each content; raises BadInput when the compiler refuses."""
-    ffi, lib = load_shared(_declarations(), _built(model, f"kernel-{model.name}", SINGLE))
+    ffi, lib = load_shared(_declarations(), _built(model, "kernel", SINGLE))
     return Kernel(model, ffi, lib)
 
 
 @lru_cache(maxsize=128)
 def _further(single: Kernel, what: str, files: tuple[str, ...]) -> Any:
-    return single.ffi.dlopen(str(_built(single.model, f"{what}-{single.model.name}", files)))
+    return single.ffi.dlopen(str(_built(single.model, what, files)))
 
 
 def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
@@ -82,7 +82,7 @@ def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
     if files is SINGLE and len(_header(model)) > LONG_EQUATIONS:
         own = (*own, *EQUATIONS_ONCE_FLAGS)
     flags = (*FAST_FLAGS, *own, f"-DBATCH_LANES={BATCH_LANES}")
-    return build_shared(name, sources, include_dirs=[C_DIR], flags=flags)
+    return build_shared(name, sources, include_dirs=[C_DIR], flags=flags, of=model.name)
 
 
 @lru_cache(maxsize=64)

@@ -11,12 +11,14 @@ from records.errors import BadInput
 from sim.equilibrium import equilibrium
 from sim.halving import step_error
 from sim.kernel.generate import model_header
+from sim.kernel.kernel import kernel
 from sim.kernel.reference import reference
 from sim.manoeuvres import flight, hop
 from sim.model import TIME, Axis, symbol
 from sim.runs.compiled_run import Conditions, run_equations
 from sim.simulate import CController, Noise, simulate
 from tests.soak import sampled
+from toolchain import host
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
 
 NOWHERE = [0.0, 0.0]  # no quantisation
@@ -232,6 +234,13 @@ def test_a_held_axis_may_have_other_friction_up_than_down(mechanism):
 
 def test_the_header_is_the_same_text_each_time(bound):
     assert model_header(bound.model) == model_header(bound.model)
+
+
+def test_plants_of_the_same_equations_share_what_is_compiled(mechanism, monkeypatch):
+    own = mechanism().model
+    kernel(own)
+    monkeypatch.setattr(host, "run_zig", lambda *_: pytest.fail("compiled again"))
+    kernel(replace(own, name="another"))
 
 
 @pytest.mark.parametrize(
