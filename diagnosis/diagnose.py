@@ -28,7 +28,7 @@ from diagnosis.fit.nominal import plain_fit
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.screening import alarmed, alone_of, beside_noise, detected_anew, seen_of
 from diagnosis.search.beam import Search, search, with_twins
-from diagnosis.search.draughts import Draught, draught
+from diagnosis.search.draughts import Draught, draught, knocks
 from diagnosis.search.free_curve import FittedCurve, free_curve
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import changes_names, needed, yielding
@@ -100,8 +100,12 @@ def _in_their_rows(firmware: Firmware | None) -> bool:
 
 def _nothing(seen: Seen, noisy: Seen, material: Material, reason: Exit, holdout: Holdout | None = None) -> Result:
     """The answer where no effect shows: a gust where the noise is one, of the plant as it was fitted with noise, whether or not names were
-    sought without; else none. Raises BadInput where logs that were not fitted are wired otherwise."""
+    sought without it; else none. White noise is one only where nothing shows beside it: friction that no name surely stands for is white
+    noise too. Raises BadInput where logs that were not fitted are wired otherwise."""
     gusty, rules = draught(noisy.case, noisy.retuned)
+    if gusty is None and not alarmed(noisy.detection.p):
+        gusty, more = knocks(noisy.case, noisy.retuned)
+        rules = (*rules, *more)
     seen = seen.because(*rules)
     if gusty is not None:
         return _gust(replace(noisy, decisions=seen.decisions), material, gusty)

@@ -5,7 +5,7 @@ White noise w of an axis' speed, in rad/s per sqrt(s), is the gust of the shorte
 (1)  sigma = J w / sqrt(2 T)        J: the axis' inertia where the logs begin
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,16 +35,26 @@ class Draught:
 
 def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tuple[Decision, ...]]:
     """The strongest gust of the plant's noise, `retuned` within its spread, where it is worth telling; and the rule that says so."""
-    slow, white = gust_shares(case, retuned.fit.hypothesis), white_shares(case, retuned.fit.hypothesis)
-    shares = white | slow
-    if not shares:
+    shares = gust_shares(case, retuned.fit.hypothesis)
+    name, rules = _worth_telling(shares)
+    return (None if name is None else _of_memory(case, retuned, name)), rules
+
+
+def knocks(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tuple[Decision, ...]]:
+    """The same of its white noise."""
+    shares = white_shares(case, retuned.fit.hypothesis)
+    name, rules = _worth_telling(shares)
+    return (None if name is None else _of_white(case, retuned, name, shares[name])), rules
+
+
+def _worth_telling(shares: Mapping[str, float]) -> tuple[str | None, tuple[Decision, ...]]:
+    """The largest share that is no usual noise, and the rule; nothing of none."""
+    name = max(shares, key=lambda name: shares[name], default=None)
+    if name is None:
         return None, ()
-    name = max(shares, key=lambda name: shares[name])
     told = shares[name] >= decisions.USUAL_GUST
     rule = decided("draught", name, shares[name], decisions.USUAL_GUST, "a gust" if told else "usual noise")
-    if not told:
-        return None, (rule,)
-    return _of_memory(case, retuned, name) if name in slow else _of_white(case, retuned, name, shares[name]), (rule,)
+    return (name if told else None), (rule,)
 
 
 def _of_memory(case: Case, retuned: FittedHypothesis, name: str) -> Draught | None:

@@ -11,7 +11,7 @@ from diagnosis.fit.coloured_noise import colour_sd
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.draughts import draught, white_shares
+from diagnosis.search.draughts import draught, knocks, white_shares
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
@@ -64,6 +64,7 @@ def test_a_gust_is_noise_of_its_axis_with_its_numbers(plant: BoundPlant, fly: Fl
 def test_still_air_has_no_gust(plant: BoundPlant, fly: Fly) -> None:
     case, nominal = alone(plant, [fly(93, rig_seed=90)])
     assert draught(case, nominal)[0] is None
+    assert knocks(case, nominal)[0] is None
     assert max(white_shares(case, nominal.fit.hypothesis).values()) < 0.01
 
 
@@ -79,7 +80,8 @@ def test_an_arm_that_is_knocked_about_is_told_as_a_gust_of_the_shortest_memory(p
         for axis, J in (("elevation", "J_E"), ("azimuth", "J_A"))
     }
     assert shares == pytest.approx({f"{axis}.gust": share for axis, share in truth.items()}, rel=0.25)
-    found, rules = draught(case, nominal)
+    assert draught(case, nominal) == (None, ())
+    found, rules = knocks(case, nominal)
     assert found is not None
     (name,) = found.gusty.effects
     assert rules[0].outcome == "a gust"
