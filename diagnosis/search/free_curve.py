@@ -52,6 +52,14 @@ class FittedCurve:
         return _added(linearisation.case, self.curve.along(linearisation), self.b)
 
 
+class _Reached(NamedTuple):
+    """The logs with what weights b (k,) of a curve add to them, and the plant's fit to these."""
+
+    case: Case
+    fit: Fit
+    b: Array
+
+
 class _Weights(NamedTuple):
     """Weights to first order: their evidence, their variance s^2, and the step to them."""
 
@@ -128,18 +136,18 @@ def _weights(scores: Scores, b: Array) -> _Weights:
 
 def _fitted(case: Case, start: Fit, begun: Linearisation, curve: Curve, count: int, known: Hypothesis) -> FittedCurve:
     """A curve fitted from the plant alone."""
-    at, here, there, b = start, case, begun, np.zeros(curve.weights)
+    reached, there = _Reached(case, start, np.zeros(curve.weights)), begun
     for _ in range(ROUNDS):
         answers = _answers(there, [curve], curve.target)
-        weights = _weights(there.scores_of(answers), b)
-        further = _further(case, at, here, there, curve, answers, b, weights)
+        weights = _weights(there.scores_of(answers), reached.b)
+        further = _further(case, reached, curve, weights, there.moved_by(answers @ weights.step))
         if further is None:
             break
-        gained = _penalised(further[1], further[2], weights) - _penalised(at, b, weights)
-        here, at, b = further
-        there = linearised(here, at)
+        gained = _penalised(further, weights) - _penalised(reached, weights)
+        reached, there = further, linearised(further.case, further.fit)
         if gained < LEAST_GAIN:
             break
+    here, at, b = reached
     noisy = with_memory_of(here, at, known) if has_memory(case, known) else at
     if noisy.log_posterior > at.log_posterior:
         at, there = noisy, linearised(here, noisy)
@@ -151,25 +159,25 @@ def _fitted(case: Case, start: Fit, begun: Linearisation, curve: Curve, count: i
     return FittedCurve(curve, b, covariance, here, at, evidence(at, case.library.effects) - cost)
 
 
-def _further(
-    case: Case, at: Fit, here: Case, there: Linearisation, curve: Curve, answers: Array, b: Array, weights: _Weights
-) -> tuple[Case, Fit, Array] | None:
-    """The logs with a step more of the curve, the plant's fit to them and the weights there; None where no part of the step leads up."""
-    theta = there.moved_by(answers @ weights.step)
+def _further(case: Case, reached: _Reached, curve: Curve, weights: _Weights, theta: Array) -> _Reached | None:
+    """A step of the weights and of `theta` further, the plant fitted anew; None where no part of the step leads up."""
+    hypothesis = reached.fit.hypothesis
     for part in PARTS:
-        moved = b + part * weights.step
-        with_curve = _added(case, curve, moved)
-        begun = replace(at.hypothesis, theta=at.hypothesis.theta + part * theta)
-        found = fit(with_curve, begun, rounds=2)
-        if found is not None and _penalised(found, moved, weights) > _penalised(at, b, weights):
+        b = reached.b + part * weights.step
+        with_curve = _added(case, curve, b)
+        found = fit(with_curve, replace(hypothesis, theta=hypothesis.theta + part * theta), rounds=2)
+        if found is None:
+            continue
+        moved = _Reached(with_curve, found, b)
+        if _penalised(moved, weights) > _penalised(reached, weights):
             again = fit(with_curve, coloured_noise_of(with_curve, found.hypothesis), rounds=3)
-            return with_curve, found if again is None or again.log_posterior < found.log_posterior else again, moved
+            return moved if again is None or again.log_posterior < found.log_posterior else moved._replace(fit=again)
     return None
 
 
-def _penalised(at: Fit, b: Array, weights: _Weights) -> float:
-    """What a fit with weights `b` is worth, in nats, but for volumes."""
-    return at.log_posterior - 0.5 * float(b @ b) / weights.variance
+def _penalised(reached: _Reached, weights: _Weights) -> float:
+    """What a fit with its weights is worth, in nats, but for volumes."""
+    return reached.fit.log_posterior - 0.5 * float(reached.b @ reached.b) / weights.variance
 
 
 def _answers(linearisation: Linearisation, found: Sequence[Curve], target: int) -> Array:
