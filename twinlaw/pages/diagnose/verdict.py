@@ -35,7 +35,7 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
         missed = missed_most(diagnosis)
         if missed is not None:
             return (
-                f"The plant file explains these logs{tuned} but for noise: nothing that they could show is missing, yet predictions over a "
+                f"The plant file explains these logs{tuned}, noise apart: nothing that they could show is missing, yet predictions over a "
                 f"second miss {missed}."
             )
         return f"The plant file explains these logs{tuned}: nothing is missing that they could show."

@@ -34,7 +34,7 @@ STIFFER = Note(
         # Truth: 0.05 rad of 0.004 that the sensor leaves; from twice that on noise is laid to it in the first sentence.
         (
             {"verdict": "no gap", "shrinkage": replace(SHRINKAGE, rms_after={"psi_rad": 0.01, "phi_rad": 0.05})},
-            "but for noise: nothing that they could show is missing, yet predictions over a second miss phi_rad by 12.5 times",
+            ", noise apart: nothing that they could show is missing, yet predictions over a second miss phi_rad by 12.5 times",
         ),
         (
             {"verdict": "no gap", "shrinkage": replace(SHRINKAGE, rms_before={"psi_rad": 0.01, "phi_rad": 0.005})},
