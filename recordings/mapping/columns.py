@@ -10,7 +10,7 @@ from recordings.channels import Channel
 from recordings.mapping.source import Source
 from recordings.mapping.times import times
 from recordings.mapping.values import Looked, evaluated, factor_of, parsed
-from recordings.mapping.wraps import INTEGERS, angle_past_its_end
+from recordings.mapping.wraps import INTEGERS, angle_past_its_end, counter_size
 from records.errors import BadInput
 from records.text.units import unit_of
 
@@ -33,10 +33,10 @@ def column(name: str, text: str, of: Source) -> Column:
     node = parsed(name, text, of)
     quantity = evaluated(name, text, node, found.look_up, of)
     factor, told = factor_of(name, text, quantity, of)
-    values = quantity.values * factor
+    values, over = quantity.values * factor, ""
     if (unit_of(name) or "1") == "rad" and quantity.values.ndim:
         values, over = _without_leaps(values, factor, quantity.unit)
-        told += over
+    told += over or _ran_over(found, text)
     if not quantity.values.ndim:
         return Column(Channel(None, values), text, f"{name} = {text}, a constant")
     _check_numbers(name, text, values, found, of)
@@ -58,6 +58,15 @@ def _without_leaps(values: Array, factor: float, unit: str | None) -> tuple[Arra
     if unit is None:
         return values, f", which leaps by {what} {leaps} times: unwrap(...) around it would undo that"
     return counted, f", without {leaps} leaps of {what}"
+
+
+def _ran_over(found: Looked, text: str) -> str:
+    """What is to be said of a signal that runs over in its integer, negative numbers in hexadecimal digits say, where it is taken as it is."""
+    for name, values in found.used if "unwrap" not in text else ():
+        size = counter_size(values)
+        if size is not None:
+            return f", where {name} leaps by {size:.0f}: unwrap({name}, {size:.0f}) in its place would undo that"
+    return ""
 
 
 def _check_numbers(name: str, text: str, values: Array, found: Looked, of: Source) -> None:

@@ -44,5 +44,12 @@ def angle_past_its_end(values: Array, sizes: Sequence[float]) -> tuple[Array, in
     return values, 0, 0.0
 
 
+def counter_size(values: Array) -> float | None:
+    """The range of the integer in which whole numbers (n,) run over; None where they do not."""
+    known = values[np.isfinite(values)] if values.ndim == 1 else values[:0]
+    _, leaps, size = angle_past_its_end(known, INTEGERS)
+    return size if leaps and _are_whole(known) else None
+
+
 def _are_whole(values: Array) -> bool:
     return bool(np.all(np.isfinite(values)) and np.all(values == np.round(values)))

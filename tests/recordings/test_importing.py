@@ -145,6 +145,20 @@ def test_an_angle_within_one_turn_and_counts_of_16_bits_are_counted_on_and_that_
     assert any("unwrap(...) around it" in told for told in typed.found)
 
 
+def test_counts_in_an_integer_that_a_formula_takes_as_they_are_are_said_to_leap(tmp_path: Path) -> None:
+    """Truth: the angle swings about 0 in counts of 1 mrad, which 16 bits without a sign hold as 65535 and less below 0."""
+    counts = np.round(1e3 * TURNED["psi_rad"]).astype(np.int64)
+    rows = zip(RUN["t_s"], RUN["u_M_V"], RUN["u_T_V"], counts & 0xFFFF, RUN["phi_rad"], strict=True)
+    lines = [f"{t},{u},{v},0x{int(k):04X},{phi}" for t, u, v, k, phi in rows]
+    path = tmp_path / "run.csv"
+    path.write_text("\n".join(["t_s,u_M_V,u_T_V,counts,phi_rad", *lines]), encoding="utf-8")
+    said = import_file(path, ColumnMapping(columns={"psi_rad": "counts*0.001"})).found
+    assert any("counts leaps by 65536: unwrap(counts, 65536) in its place" in told for told in said)
+    done = import_file(path, ColumnMapping(columns={"psi_rad": "unwrap(counts, 65536)*0.001"}))
+    np.testing.assert_allclose(done.log.column("psi_rad"), 1e-3 * counts, atol=1e-12)
+    assert not any("65536:" in told for told in done.found)
+
+
 def test_a_signal_of_the_name_in_another_quantity_is_proposed_with_a_factor_to_be_typed() -> None:
     t_s = 0.01 * np.arange(50)
     names = ("u_M_pct", "u_T_V", "psi_deg", "phi_deg")

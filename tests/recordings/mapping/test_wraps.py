@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recordings.mapping.wraps import angle_past_its_end, clock_past_its_end
+from recordings.mapping.wraps import angle_past_its_end, clock_past_its_end, counter_size
 
 TICKS = np.arange(0.0, 6000.0, 10.0)
 
@@ -60,3 +60,11 @@ def test_an_angle_that_is_lost_and_one_of_several_turns_stay() -> None:
     several[50] -= 360.0
     assert angle_past_its_end(several, [360.0])[1] == 0
     assert angle_past_its_end(np.full(9, np.nan), [360.0])[1] == 0
+
+
+@pytest.mark.parametrize(("bits", "size"), [(0xFFFF, 65536.0), (0xFFFFFFFF, 2.0**32)])
+def test_negative_counts_in_an_integer_without_sign_are_seen_by_its_range(bits: int, size: float) -> None:
+    counts = np.round(300.0 * np.sin(0.02 * np.arange(900))).astype(np.int64)
+    assert counter_size((counts & bits).astype(float)) == size
+    assert counter_size(counts.astype(float)) is None
+    assert counter_size((counts & bits) + 0.5) is None  # no counts
