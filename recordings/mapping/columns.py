@@ -61,7 +61,7 @@ def _without_leaps(values: Array, factor: float, unit: str | None) -> tuple[Arra
 
 
 def _ran_over(found: Looked, text: str) -> str:
-    """What is to be said of a signal that runs over in its integer, negative numbers in hexadecimal digits say, where it is taken as it is."""
+    """What is to be said of a signal that runs over in its integer, negative hexadecimal numbers say, where it is taken as it is."""
     for name, values in found.used if "unwrap" not in text else ():
         size = counter_size(values)
         if size is not None:
