@@ -9,6 +9,7 @@ Known to the rounding of u only, the state cannot give equal bits: agreement is 
 """
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -27,28 +28,38 @@ Array = NDArray[np.float64]
 def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, float] | None:
     """Time from which the table's law, put into the state that the log tells, follows it, and within how many volt; else None.
 
-    A law that agrees in its first sample began with the log; one that never is off by more than the bound did as well.
+    A law that agrees in its first sample began with the log; one that never is off by more than the bound did as well. Of a long log the
+    state is told anew now and then, as a law that integrates forgets no error of it.
     """
-    row, setup = _telling_row(shop.flight, table), Setup(table)
+    rows, setup = _telling_rows(shop.flight, table), Setup(table)
     at_rest_V = ReplayLaw(setup).outputs(shop.inputs(setup))
     off_V = np.abs(at_rest_V - shop.flight.logged_V).max(axis=1)
-    if row is None or not off_V[0] > shop.flight.half_step_V[0].max():
+    if not rows.size or not off_V[0] > shop.flight.half_step_V[0].max():
         return None
     law, inputs, n = ReplayLaw(setup), shop.inputs(setup), len(shop.flight.t_s)
-    state = _state(law, inputs, shop.flight, table, row)
+    spans = [(row, min(behind + thresholds.HISTORY + 1, n)) for row, behind in pairwise([*_anew(rows), n])]
+    states = [_state(law, inputs, shop.flight, table, row) for row, _ in spans]
     wanted, slack = shop.answers(setup)
     for bound_V in thresholds.BOUNDS_V:
-        if (
-            np.nanmax(off_V) > thresholds.CLEARLY_OFF * bound_V
-            and law.run(law.copied(state), (row, n), inputs, wanted, slack + bound_V) == n
+        if np.nanmax(off_V) > thresholds.CLEARLY_OFF * bound_V and all(
+            law.run(law.copied(state), (row, behind), inputs, wanted, slack + bound_V) == behind
+            for state, (row, behind) in zip(states, spans, strict=True)
         ):
-            return float(shop.flight.t_s[row]), bound_V
+            return float(shop.flight.t_s[rows[0]]), bound_V
     return None
 
 
-def _telling_row(flight: ReplayedLog, table: ControllerTable) -> int | None:
-    """The first row before which references were known for SETTLED_CONSTANTS time constants, and HISTORY rows are
-    whole and off the limits."""
+def _anew(rows: NDArray[np.int64]) -> list[int]:
+    """The first of the rows that tell the state, and each first that is TOLD_ANEW rows and more behind the last of these."""
+    found = [int(rows[0])]
+    while (later := rows[rows >= found[-1] + thresholds.TOLD_ANEW]).size:
+        found.append(int(later[0]))
+    return found
+
+
+def _telling_rows(flight: ReplayedLog, table: ControllerTable) -> NDArray[np.int64]:
+    """The rows before which references were known for SETTLED_CONSTANTS time constants, and HISTORY rows are whole and off the limits;
+    without the last LEAST_ROWS."""
     n = len(flight.t_s)
     longest_s = max(axis.prefilter_time_constant_s for axis in table.axes)
     settling = max(thresholds.HISTORY, int(np.ceil(thresholds.SETTLED_CONSTANTS * longest_s / table.sample_period_s)))
@@ -58,9 +69,7 @@ def _telling_row(flight: ReplayedLog, table: ControllerTable) -> int | None:
     with np.errstate(invalid="ignore"):
         free = known & np.all((flight.logged_V > low) & (flight.logged_V < high), axis=1)
     rows = np.arange(settling, max(settling, n - thresholds.LEAST_ROWS))
-    telling = (_run_before(known, settling)[rows]) & (_run_before(free, thresholds.HISTORY)[rows])
-    found = rows[telling]
-    return int(found[0]) if found.size else None
+    return rows[(_run_before(known, settling)[rows]) & (_run_before(free, thresholds.HISTORY)[rows])]
 
 
 def _run_before(marked: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:

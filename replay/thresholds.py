@@ -38,6 +38,11 @@ SETTLED_CONSTANTS = Limit(
 HISTORY = Count(4, "samples", "differences of s reach back three samples, and one", "exact")
 BOUNDS_V = Limits((1e-6, 1e-5, 1e-4, 1e-3), "V", "agreement bounds tried from fine to coarse")
 LEAST_ROWS = Count(200, "rows", "that must remain to compare")
+TOLD_ANEW = Count(
+    3000,
+    "rows",
+    "after which the state is told anew: what rounding of the inputs leaves of it grows to 0.1 mV within 5000 rows of the CE150",
+)
 CLEARLY_OFF = Limit(100.0, "times the bound", "a law from rest is off by this much in a log that begins in flight")
 
 # overflow
