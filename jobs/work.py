@@ -57,8 +57,14 @@ def _told(error: Exception) -> str:
 def settle_in() -> None:
     """Prepare a worker process: Ctrl-C is its parent's to answer, SIGTERM ends it tidily, and it does not outlive its parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(KILLED))
+    signal.signal(signal.SIGTERM, _stop)
     threading.Thread(target=_leave_with_parent, daemon=True).start()
+
+
+def _stop(*_: object) -> None:
+    """Once: who is told again, as a pool tells those that are left when one of them has ended, closes what it has open all the same."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    sys.exit(KILLED)
 
 
 def _leave_with_parent() -> None:

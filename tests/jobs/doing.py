@@ -50,12 +50,13 @@ def deadly(record: tuple[int, int, str]) -> int:
 
 
 def endless(folder: str) -> int:
-    """Says that it has begun and waits to be stopped; says so when it is."""
+    """Says that it has begun and waits to be stopped; is told so once more, as a pool does, and says so when it is."""
     place = Path(folder)
     try:
         (place / f"begun-{os.getpid()}").touch()
         threading.Event().wait()
     finally:
+        os.kill(os.getpid(), signal.SIGTERM)
         (place / f"closed-{os.getpid()}").touch()
     return 0
 
