@@ -96,8 +96,9 @@ def white_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     for index, axis in enumerate(model.axes):
         effect = noise_on(case, index)
         if effect is not None:
-            inertia = float(sympy.sympify(axis.inertia).xreplace({**named_values(model, p), **start}))
-            sigma = inertia * 10.0 ** hypothesis.process_noise[index] / float(np.sqrt(2.0 * _shortest_s(effect)))
+            inertia = sympy.sympify(axis.inertia).subs({**named_values(model, p), **start})
+            inertia = inertia.subs(dict.fromkeys(inertia.free_symbols, 0))  # of inputs, say
+            sigma = float(inertia) * 10.0 ** hypothesis.process_noise[index] / float(np.sqrt(2.0 * _shortest_s(effect)))
             found[effect.name] = sigma / model.places.axes[axis.name].torque_size
     return found
 
