@@ -28,17 +28,16 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _plant_sentence(diagnosis: Diagnosis) -> str:
+    missed = missed_most(diagnosis)
     if diagnosis.verdict != "gap" and diagnosis.verdict_reason in SMALL:
-        return f"{_NOT_TOLD[diagnosis.verdict]}. {reason_in_words(diagnosis)}"
+        rest = "" if missed is None else f" The rest is noise to the model: predictions over a second miss {missed}."
+        return f"{_NOT_TOLD[diagnosis.verdict]}. {reason_in_words(diagnosis)}{rest}"
     if diagnosis.verdict == "no gap":
         tuned = " once its parameters are re-tuned within what it states of them" if lowered(diagnosis) else ""
-        missed = missed_most(diagnosis)
-        if missed is not None:
-            return (
-                f"The plant file explains these logs{tuned}, noise apart: nothing that they could show is missing, yet predictions over a "
-                f"second miss {missed}."
-            )
-        return f"The plant file explains these logs{tuned}: nothing is missing that they could show."
+        if missed is None:
+            return f"The plant file explains these logs{tuned}: nothing is missing that they could show."
+        yet = f"nothing that they could show is missing, yet predictions over a second miss {missed}"
+        return f"The plant file explains these logs{tuned}, noise apart: {yet}."
     if diagnosis.verdict == "cannot tell":
         return "These logs hold too little motion to tell whether the plant file lacks anything."
     if not diagnosis.found:

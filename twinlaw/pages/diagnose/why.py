@@ -18,7 +18,7 @@ _REASONS = {
     "nothing_seen": "What these logs hold beyond the plant as stated is no more than chance gives.",
     "too_little_seen": "Most effects of the library would go unseen in these logs, so that nothing shows in them says little.",
     "yielding_explains": "Axes that creep or give near rest, as dry friction does, explain what looked like a gap.",
-    "unexplained": "What remains is small, and neither an effect of sure size nor other parameters explain it.",
+    "unexplained": "What shows beyond noise is small, and neither an effect of sure size nor other parameters explain it.",
     "too_small": "What would explain the rest brings predictions over a second hardly closer, so none of it is told.",
     "too_unsure": "What would explain the rest may bring predictions over a second closer, but not surely: more logs would tell.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",

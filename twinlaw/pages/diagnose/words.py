@@ -172,8 +172,8 @@ def missed_most(diagnosis: Diagnosis) -> str | None:
 
 def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
     """What the chance of a false alarm says."""
+    missed = missed_most(diagnosis)
     if diagnosis.verdict != "gap" and p > decisions.ALARM:
-        missed = missed_most(diagnosis)
         usual = (
             "what remains is as small as on a rig that is as the plant file states, with its sensors"
             if missed is None
@@ -183,4 +183,8 @@ def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
     seldom = (
         f"a rig that is as the plant file states, with its sensors, shows so large a gap with probability {chance(p)}"
     )
-    return seldom if diagnosis.verdict != "no gap" else f"something is there, too small to count, although {seldom}"
+    if diagnosis.verdict != "no gap":
+        return seldom
+    if missed is None:
+        return f"something is there, too small to count, although {seldom}"
+    return f"something is there that nothing known here brings closer: predictions over a second miss {missed}, and {seldom}"

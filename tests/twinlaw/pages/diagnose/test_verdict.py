@@ -84,3 +84,16 @@ def test_no_gap_whose_predictions_miss_the_logs_held_out_is_not_called_as_small_
 def test_no_gap_that_chance_does_not_give_says_why_it_is_none() -> None:
     small = replace(GAP, verdict="no gap", false_alarm_probability=1e-9, found=(), effects=())
     assert "no gap: something is there, too small to count, although a rig" in summary_text(small)
+
+
+def test_what_is_called_too_small_says_what_it_leaves() -> None:
+    # Truth: 11.5 floors off on the logs held out: no reader is told that as much is small.
+    after = replace(SHRINKAGE, rms_after={"psi_rad": 0.01, "phi_rad": 0.046})
+    off = replace(GAP, verdict="no gap", verdict_reason="too_small", found=(), effects=(), shrinkage=after)
+    told = summary_text(replace(off, false_alarm_probability=1e-9))
+    assert "The rest is noise to the model: predictions over a second miss phi_rad by 11.5 times" in told
+    assert (
+        "no gap: something is there that nothing known here brings closer: predictions over a second miss phi_rad by 11.5"
+        in told
+    )
+    assert "small to count" not in told
