@@ -68,7 +68,7 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
 def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, Exit | None]:
     """By which exit a gap leaves whose explanation predicts the logs no better than the plain plant with its parameters moved: by what
     matters, and a small gap by more than chance, as a gain of x nats has a chance of exp(-x) at most; or surely those that were not
-    fitted. None where it stands. What may matter, but not surely, is not said to be nothing.
+    fitted. None where it stands. What may matter, but not surely, is not said to be nothing, be it what a free curve stands for.
 
     A plant that had to move a parameter beyond its spread is none that is as stated, however well it then predicts.
     """
@@ -81,6 +81,10 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, Exit | None]:
     surely = max(worth, -float(np.log(decisions.ALARM))) if small else worth
     told, rule = _consequence("matters", named(judged.weighed), ahead_nats or 0.0, worth, surely, "nats")
     seen = seen.because(rule)
+    if told is Consequence.NONE and judged.curve is not None:
+        of = judged.curve.curve.class_text
+        nameless, rule = _consequence("curve_matters", of, judged.curve.ahead_nats, worth, surely, "nats")
+        told, seen = Consequence.PERHAPS if nameless is Consequence.SURE else told, seen.because(rule)
     names = judged.weighed.fitted and not judged.weighed.nameless
     if told is not Consequence.SURE and judged.holdout is not None and names:
         score = judged.holdout.score(judged.weighed.fitted[0].fit.hypothesis)
@@ -91,11 +95,13 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, Exit | None]:
 
 
 def may_be_missing(judged: Judged) -> tuple[Note, ...]:
-    """What would explain a gap that does not surely matter."""
-    weighed = judged.weighed
-    if not weighed.fitted:
-        return ()
-    return (Note("may_be_missing", named(weighed), {"probability": weighed.probabilities[0]}),)
+    """What would explain a gap that does not surely matter: the likeliest name, and what a free curve stands for where that predicts
+    better than what explains does in the mean."""
+    weighed, curve = judged.weighed, judged.curve
+    found = [(named(weighed), weighed.probabilities[0])] if weighed.fitted else []
+    if curve is not None and curve.ahead_nats > (weighed.ahead_nats or 0.0):
+        found.append((curve.curve.class_text, weighed.unknown))
+    return tuple(Note("may_be_missing", subject, {"probability": p}) for subject, p in found)
 
 
 def _consequence(

@@ -9,6 +9,7 @@ from diagnosis import decisions
 from diagnosis.confirmation import may_be_missing, of_consequence
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.weighing import Explanations, Weighed, weigh
+from diagnosis.detect.curves import curves
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
 from diagnosis.detect.linearisation import Scores
@@ -20,12 +21,13 @@ from diagnosis.fit.nominal import plain_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Exit, Judged, Result, Seen
+from diagnosis.search.free_curve import FittedCurve
 from diagnosis.validate.judged_logs import JudgedLogs
 from diagnosis.validate.score import HORIZONS_S, Errors, Score
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
-from tests.diagnosis.arm import arm, arm_case, arm_log
+from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
 from tests.diagnosis.conftest import Fly
 from tests.diagnosis.nominal import nominal_fit
 
@@ -173,6 +175,23 @@ def test_what_logs_that_were_not_fitted_may_be_predicted_better_by_is_not_said_t
     result = Judged(object(), None, None, weighed, found, holdout, ())  # type: ignore[arg-type]
     assert of_consequence(seen, result)[1] is left_by
     assert [note.subject for note in may_be_missing(result)] == ["arm.coulomb"]
+
+
+@pytest.mark.parametrize(("ahead_nats", "left_by"), [(0.0, Exit.TOO_SMALL), (1e3, Exit.TOO_UNSURE)])
+def test_what_a_free_curve_surely_predicts_better_is_not_said_to_be_nothing(ahead_nats: float, left_by: Exit) -> None:
+    # Truth by hand: the name predicts nothing, the curve nothing either or a thousand nats.
+    _, holdout = judged(arm_log(seed=33, seconds=6.0))
+    case, found = arm_case(arm_log(seed=31)), supposing({"arm.coulomb": {"b": 1e-4}})
+    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+    detection = Detection(1e-4, Tail(5.0, 1.0), 30.0, False, FormScores((), empty, np.zeros(0)))
+    seen = Seen(case, None, holdout.base, object(), (), None, detection)  # type: ignore[arg-type]
+    weighed = Weighed((found,), (0.6,), 0.4, 0.0, 10.0, ahead_nats=0.0)
+    form = curves(plain_linearisation())[0]
+    curve = FittedCurve(form, np.zeros(0), np.zeros((0, 0)), case, found.fit, 50.0, ahead_nats)
+    result = Judged(object(), None, curve, weighed, found, holdout, ())  # type: ignore[arg-type]
+    assert of_consequence(seen, result)[1] is left_by
+    subjects = [note.subject for note in may_be_missing(result)]
+    assert subjects == ["arm.coulomb", *([form.class_text] if ahead_nats else [])]
 
 
 def test_what_is_unlikely_is_added_only_where_the_hold_out_is_better_for_it() -> None:
