@@ -38,8 +38,8 @@ def timed(found: FormScores) -> dict[tuple[str, str], float]:
 
 
 def test_a_clock_that_began_earlier_changes_no_score() -> None:
-    # Truth: the same run by another clock. Rounded otherwise an axis comes to rest a row earlier, which moves the likelihood by some nats, and
-    # scores by no more: 5, or 7 of a longer run. What gains less is none.
+    # Truth: the same run by another clock. Rounded otherwise an axis comes to rest a row earlier, which moves the likelihood by some nats,
+    # and scores by no more: 5, or 7 of a longer run. What gains less is none.
     log = arm_log(WARM)
     here, there = linear(log), linear(replace(log, t_s=log.t_s + BEGAN_S))
     one, other = scores(here), scores(there)
