@@ -12,23 +12,26 @@ from numpy.typing import NDArray
 from recordings.signals import Contents, Signal
 
 Array = NDArray[np.float64]
-BY_CHANCE = (
-    0.1  # of the rows stand before an older one: by chance half of them do, behind a clock that was set back one in all
-)
+BY_CHANCE = 0.1  # of the rows stand before an older one: half do by chance, one in all behind a clock that was set back
 EVEN, EVEN_SHARE = (0.6, 1.6), 0.9  # usual steps that so many of those are at least which putting rows in order makes
+NEWEST_FIRST = "the newest row stands first: rows are turned round"
 
 
 def in_time(contents: Contents) -> Contents:
-    """The same with its rows in the order of its one clock, and what is said of it; as it is where its clocks differ or tell no order."""
-    clocks = {signal.clock for signal in contents.signals.values() if signal.clock is not None}
-    if len(clocks) != 1:
+    """The same with its rows in the order of their times, and what is said of it; as it is where the clock tells no order.
+
+    Of several clocks each must have the newest row first: of rows in another order nobody knows which clock is theirs.
+    """
+    names = {signal.clock for signal in contents.signals.values() if signal.clock is not None}
+    clocks = [contents.signals[name].values for name in names]
+    told = {_disorder(t) for t in clocks}
+    if len(told) != 1 or (len(clocks) > 1 and told != {NEWEST_FIRST}):
         return contents
-    t = contents.signals[clocks.pop()].values
-    told = _disorder(t)
-    if told is None:
+    said = told.pop()
+    if said is None:
         return contents
-    order = np.argsort(t, kind="stable")
-    return replace(contents, signals=_ordered(contents.signals, order), found=(*contents.found, told))
+    orders = {t.shape: np.argsort(t, kind="stable") for t in clocks}
+    return replace(contents, signals=_ordered(contents.signals, orders), found=(*contents.found, said))
 
 
 def _disorder(t: Array) -> str | None:
@@ -41,7 +44,7 @@ def _disorder(t: Array) -> str | None:
     if not falls.any() or not (steps > 0.0).all():
         return None
     if falls.all():
-        return "the newest row stands first: rows are turned round"
+        return NEWEST_FIRST
     moved = int(np.count_nonzero(order != np.arange(t.size)))
     made = np.diff(order) != 1
     low, high = (share * float(np.median(steps)) for share in EVEN)
@@ -51,15 +54,13 @@ def _disorder(t: Array) -> str | None:
     return None
 
 
-def _ordered(signals: Mapping[str, Signal], order: NDArray[np.int64]) -> dict[str, Signal]:
-    places = {int(row): place for place, row in enumerate(order)}
-    return {
-        name: replace(
-            signal,
-            values=signal.values[order],
-            faults={places[row]: told for row, told in signal.faults.items() if row in places},
-        )
-        if len(signal.values) == len(order)
-        else signal
-        for name, signal in signals.items()
-    }
+def _ordered(signals: Mapping[str, Signal], orders: Mapping[tuple[int, ...], NDArray[np.int64]]) -> dict[str, Signal]:
+    """The signals, those as long as a clock with their rows, and the faults of these, in its order."""
+    found = dict(signals)
+    for name, signal in signals.items():
+        order = orders.get(signal.values.shape[:1])
+        if order is not None:
+            places = {int(row): place for place, row in enumerate(order)} if signal.faults else {}
+            faults = {places[row]: told for row, told in signal.faults.items()}
+            found[name] = replace(signal, values=signal.values[order], faults=faults)
+    return found

@@ -50,7 +50,7 @@ class ModelComparison:
     """What is known of a gap's explanations: nats that the best of them gains (`gain_nats`), of these what rests on forms of effects
     (`formed_nats`), what free forms still gain beside it (`left_nats`), what logs that were not fitted say of the first (-1 to 1; None
     without such logs or a first), of parameters beyond their spread alone nats of evidence (None: there are none) and ahead, and nats of
-    evidence of a free curve instead of all these (None: none gains any), and ahead."""
+    evidence of a free curve instead of all these, beside what earns no name as the best of them is (None: none gains any), and ahead."""
 
     candidates: tuple[Candidate, ...]
     gain_nats: float

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recordings.row_order import in_time
+from recordings.row_order import NEWEST_FIRST, in_time
 from recordings.signals import Contents, Signal
 
 T_S = 0.01 * np.arange(200)
@@ -45,3 +45,15 @@ def test_of_two_clocks_none_is_put_in_order() -> None:
     given = contents(T_S[ORDER])
     two = Contents({**given.signals, "t2_s": Signal(T_S, "s", "t2_s")})
     assert in_time(two) is two
+
+
+def test_of_several_clocks_that_all_fall_every_row_is_turned_round() -> None:
+    """Truth: two clocks of their own lengths, each with its newest row first."""
+    slow = T_S[::4]
+    first = contents(T_S[::-1]).signals
+    further = {"t2_s": Signal(slow[::-1], "s", "t2_s"), "phi_rad": Signal(np.cos(slow)[::-1], "rad", "t2_s")}
+    put = in_time(Contents({**first, **further, "one": Signal(np.asarray(3.0))}))
+    np.testing.assert_array_equal(put.signals["psi_rad"].values, np.sin(T_S))
+    np.testing.assert_array_equal(put.signals["t2_s"].values, slow)
+    np.testing.assert_array_equal(put.signals["phi_rad"].values, np.cos(slow))
+    assert put.found == (NEWEST_FIRST,)
