@@ -181,7 +181,7 @@ class Filter:
         request = self.ffi.new(kind)
         for name, array in arrays.items():
             if array is not None:
-                setattr(request, name, self.ffi.cast("void *", array.ctypes.data))
+                setattr(request, name, self.ffi.cast("void *", self.ffi.from_buffer(array)))
         return request
 
     def respond(

@@ -223,10 +223,11 @@ def passes(
     """The filter over all flights; None where it left all bounds on one. `noises` are hypotheses, each with another noise alone, and by how
     much it is other: by these numbers of the noise the likelihood's slopes are asked."""
     compiled = case.library.compiled(hypothesis.effects)
+    of_all = coefficients(case, compiled, hypothesis)
 
     def over(flight: FilteredLog) -> Pass | None:
         here = hypothesis.over(flight)
-        p = coefficients(case, compiled, here)
+        p = of_all if here is hypothesis else coefficients(case, compiled, here)
         filter_input = filter_input_under(case, compiled, flight, here)
         x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, here)
         others = [(noise_of(case, compiled, flight, other.over(flight)), by) for other, by in noises]

@@ -10,6 +10,7 @@ nats a reading better. `misfit` is the same against what no model could better (
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,13 +70,10 @@ def errors_of(case: Case, hypothesis: Hypothesis, read: Callable[[Hypothesis], S
         smooth = hypothesis.with_effects({name: v for name, v in hypothesis.effects.items() if name not in shown})
     squares, best = [], []
     for flight, predicted in zip(case.flights, read(smooth), strict=True):
-        error = (predicted - flight.log.y) ** 2
-        mine = attainable(case, flight, hypothesis, HORIZONS_S)
-        for first, last in windows(flight.log.t_s):
-            horizon = np.searchsorted(HORIZONS_S, flight.log.t_s[first:last] - flight.log.t_s[first] - 1e-9)
-            squares.append(_by_horizon(error[first:last], horizon))
-            best.append(mine)
-    return Errors(np.array(squares), _grid(case, hypothesis, shown), np.array(best))
+        found = _by_horizon((predicted - flight.log.y) ** 2, flight.log.t_s)
+        squares.append(found)
+        best.append(np.broadcast_to(attainable(case, flight, hypothesis, HORIZONS_S), found.shape))
+    return Errors(np.concatenate(squares), _grid(case, hypothesis, shown), np.concatenate(best))
 
 
 def score(model: Errors, other: Errors) -> Score:
@@ -96,10 +94,15 @@ def by_output(model: Errors, other: Errors) -> list[Score]:
 def _drawn(model: Errors, other: Errors) -> tuple[NDArray[np.bool_], Array]:
     """What both models' errors are known of, and how often each window counts: once, then as drawn with replacement."""
     known = np.isfinite(model.squares) & np.isfinite(other.squares)
-    count = len(known)
+    return known, _draws(len(known))
+
+
+@lru_cache(maxsize=8)
+def _draws(count: int) -> Array:
+    """How often each of `count` windows counts (1 + DRAWS, count)."""
     rng = np.random.default_rng(SEED)
     drawn = [np.bincount(rng.integers(0, max(count, 1), count), minlength=count) for _ in range(DRAWS)]
-    return known, np.concatenate([np.ones((1, count)), np.stack(drawn)])
+    return np.concatenate([np.ones((1, count)), np.stack(drawn)])
 
 
 def _gains(model: Errors, other: Errors, known: NDArray[np.bool_], weights: Array) -> Array:
@@ -122,16 +125,23 @@ def _total(logs: Array) -> Array:
     return np.asarray(means.sum(axis=1))
 
 
-def _by_horizon(error: Array, horizon: NDArray[np.int64]) -> Array:
-    """Means of the rows (rows, outputs) of each horizon, NaN where one has none."""
-    found = np.full((len(HORIZONS_S), error.shape[1]), np.nan)
-    for place in np.unique(horizon[horizon < len(HORIZONS_S)]).tolist():
-        rows = error[horizon == place]
-        known = np.isfinite(rows)
-        count = known.sum(axis=0)
-        total = np.where(known, rows, 0.0).sum(axis=0)
-        found[place] = np.divide(total, count, out=np.full(error.shape[1], np.nan), where=count > 0)
-    return found
+def _by_horizon(error: Array, t_s: Array) -> Array:
+    """Means (windows, horizons, outputs) of the rows (rows, outputs) of each window and horizon, NaN where one has none."""
+    spans, horizons = windows(t_s), len(HORIZONS_S)
+    window = np.repeat(np.arange(len(spans)), [last - first for first, last in spans])
+    rows = np.concatenate([np.arange(0), *(np.arange(first, last) for first, last in spans)])
+    begins_s = t_s[np.array([first for first, _ in spans], dtype=int)[window]]
+    horizon = np.searchsorted(HORIZONS_S, t_s[rows] - begins_s - 1e-9)
+    inside = horizon < horizons
+    rows, place = rows[inside], (window * horizons + horizon)[inside]
+    known = np.isfinite(error[rows])
+
+    def summed(values: Array) -> Array:
+        sums = [np.bincount(place, column, len(spans) * horizons) for column in values.T]
+        return np.stack(sums, axis=1, dtype=float).reshape(len(spans), horizons, error.shape[1])
+
+    total, count = summed(np.where(known, error[rows], 0.0)), summed(known.astype(float))
+    return np.divide(total, count, out=np.full_like(total, np.nan), where=count > 0.0)
 
 
 def _grid(case: Case, hypothesis: Hypothesis, shown: Sequence[str]) -> Array:
