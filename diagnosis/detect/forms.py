@@ -34,7 +34,7 @@ def forms(linearisation: Linearisation) -> list[Form]:
     case = linearisation.case
     states = case.library.states
     waves = {
-        axis.name: likely_waves(linearisation, states.index(str(axis.velocity)))
+        axis.name: tuple(wave.number for wave in likely_waves(linearisation, states.index(str(axis.velocity))))
         for axis in case.library.bound.model.axes
         if axis.position is not None
     }

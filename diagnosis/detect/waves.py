@@ -2,6 +2,7 @@
 how many waves of a way it follows, from the answers to sines and cosines of the way."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +21,15 @@ APART_RAD_S = 0.3
 MOST_WAVES = 48  # a turn, that are tried: nearer ones are not told apart (WAVES_APART)
 
 
+class Wave(NamedTuple):
+    """A sine: how many of its radians go on a second, or on a unit of the way; its phase in rad, with which it gains most."""
+
+    number: float
+    phase: float
+
+
 def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
-    """Starts of an effect that swings as a sine: its likeliest waves, each as sine and as cosine; empty for other effects."""
+    """Starts of an effect that swings as a sine: its likeliest waves, as they lie; empty for other effects."""
     target, phase = disturbed_by(linearisation.case, effect), effect.having(Role.PHASE)
     if target is None or phase is None:
         return []
@@ -30,16 +38,15 @@ def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, 
         symbol, found = effect.symbol(Role.RATE), _foreign(linearisation, target, likely_waves(linearisation, target))
     else:
         symbol, found = waves.symbol, _likely_counts(linearisation, target, waves)
-    return [{symbol: value, phase.symbol: start} for value in found for start in phase.starts]
+    return [{symbol: wave.number, phase.symbol: wave.phase} for wave in found]
 
 
-def _foreign(linearisation: Linearisation, speed: int, rates: Sequence[float]) -> tuple[float, ...]:
-    """Frequencies that are not the motion's own, nor so near to one that a fit would end there."""
+def _foreign(linearisation: Linearisation, speed: int, waves: Sequence[Wave]) -> tuple[Wave, ...]:
+    """Those of frequencies that are not the motion's own, nor so near to one that a fit would end there."""
     end = max(float(filter_input.t_s[-1] - filter_input.t_s[0]) for filter_input in linearisation.filter_inputs)
-    own = [rate for rate in rates if _repeats(linearisation, speed, rate)]
-    return tuple(
-        rate for rate in rates if all(abs(rate - other) > decisions.NEAR_PERIODS * 2.0 * np.pi / end for other in own)
-    )
+    near = decisions.NEAR_PERIODS * 2.0 * np.pi / end
+    own = [wave.number for wave in waves if _repeats(linearisation, speed, wave.number)]
+    return tuple(wave for wave in waves if all(abs(wave.number - other) > near for other in own))
 
 
 def _repeats(linearisation: Linearisation, speed: int, rate: float) -> bool:
@@ -65,8 +72,8 @@ def _share(linearisation: Linearisation, state: int, rate: float) -> float:
     return max(shares, default=0.0)
 
 
-def _likely_counts(linearisation: Linearisation, target: int, waves: EffectParameter) -> tuple[float, ...]:
-    """Numbers of waves, in rad a unit, whose sine and cosine of the way that a target belongs to gain most, apart from one another."""
+def _likely_counts(linearisation: Linearisation, target: int, waves: EffectParameter) -> tuple[Wave, ...]:
+    """Waves whose sine and cosine of the way that a target belongs to gain most, apart from one another."""
     way = _way(linearisation, target)
     if way is None:
         return ()
@@ -74,9 +81,9 @@ def _likely_counts(linearisation: Linearisation, target: int, waves: EffectParam
     scores = linearisation.scores_by(_sines(linearisation, target, way, fitted), target)
     pairs = np.arange(2 * MOST_WAVES).reshape(2, MOST_WAVES).T
     own, along = scores.gram[pairs[:, :, None], pairs[:, None, :]], scores.score[pairs]
-    return tuple(
-        float(np.exp(value)) for value in _best(np.log(fitted), _pair_gains(own, along), decisions.WAVES_APART)
-    )
+    gains, phases = _pair_gains(own, along)
+    best = _best(np.log(fitted), gains, decisions.WAVES_APART)
+    return tuple(Wave(float(fitted[place]), float(phases[place])) for place in best)
 
 
 def _sines(linearisation: Linearisation, target: int, way: int, waves: Array) -> list[Disturbances]:
@@ -109,8 +116,8 @@ def _way(linearisation: Linearisation, target: int) -> int | None:
     return library.states.index(str(found)) if str(found) in library.states else None
 
 
-def likely_waves(linearisation: Linearisation, target: int) -> tuple[float, ...]:
-    """The frequencies in rad/s whose sine and cosine in time gain most at a target, apart from one another."""
+def likely_waves(linearisation: Linearisation, target: int) -> tuple[Wave, ...]:
+    """Waves in time whose sine and cosine in time gain most at a target, apart from one another."""
     times, scores = linearisation.steps(target)
     if len(times) < 8:
         return ()
@@ -118,29 +125,28 @@ def likely_waves(linearisation: Linearisation, target: int) -> tuple[float, ...]
     edge = np.eye(len(times))[:-1] - np.eye(len(times))[1:]
     gram, score = edge @ scores.gram @ edge.T, edge @ scores.score
     middle = 0.5 * (times[:-1] + times[1:])
-    gains = _gains(gram, score, RATES_RAD_S[:, None] * middle)
-    return _best(RATES_RAD_S, gains, APART_RAD_S)
+    angle = RATES_RAD_S[:, None] * middle
+    pairs = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    gains, phase = _pair_gains(pairs @ gram @ pairs.swapaxes(1, 2), pairs @ score)
+    return tuple(
+        Wave(float(RATES_RAD_S[place]), float(phase[place])) for place in _best(RATES_RAD_S, gains, APART_RAD_S)
+    )
 
 
-def _best(fitted: Array, gains: Array, apart: float) -> tuple[float, ...]:
-    """Those that gain most, at least `apart` from one another."""
-    chosen: list[float] = []
-    for index in np.argsort(-gains).tolist():
-        if all(abs(fitted[index] - other) > apart for other in chosen):
-            chosen.append(float(fitted[index]))
+def _best(fitted: Array, gains: Array, apart: float) -> list[int]:
+    """The places of those that gain most, at least `apart` from one another."""
+    chosen: list[int] = []
+    for place in np.argsort(-gains).tolist():
+        if all(abs(fitted[place] - fitted[other]) > apart for other in chosen):
+            chosen.append(place)
         if len(chosen) == decisions.NEXT:
             break
-    return tuple(chosen)
+    return chosen
 
 
-def _gains(gram: Array, score: Array, phases: Array) -> Array:
-    """What a sine and a cosine together gain, for each row of phases (waves, instants)."""
-    pairs = np.stack([np.sin(phases), np.cos(phases)], axis=1)
-    return _pair_gains(pairs @ gram @ pairs.swapaxes(1, 2), pairs @ score)
-
-
-def _pair_gains(own: Array, along: Array) -> Array:
-    """What two columns together gain, from their products `own` (k, 2, 2) and scores `along` (k, 2)."""
+def _pair_gains(own: Array, along: Array) -> tuple[Array, Array]:
+    """What a sine and a cosine together gain (k,), and the phase (k,) of the sine that they are, from their products `own` (k, 2, 2) and
+    scores `along` (k, 2)."""
     ridge = 1e-9 * np.trace(own, axis1=1, axis2=2) + 1e-12
     solved = np.linalg.solve(own + ridge[:, None, None] * np.eye(2), along[:, :, None])[:, :, 0]
-    return np.asarray(0.5 * np.einsum("ij,ij->i", along, solved))
+    return 0.5 * np.einsum("ij,ij->i", along, solved), np.arctan2(solved[:, 1], solved[:, 0])

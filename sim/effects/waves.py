@@ -18,7 +18,7 @@ from sim.places import AxisPlace, SensorPlace
 from sim.prior import NOTHING_NEW, Unlikely
 
 FEWEST, MOST = 3.5, 64.0  # waves a turn, or in the place of 2 pi of an axis' usual way
-PHASE = EffectParameter("phase", "rad", -50.0, 50.0, 0.0, starts=(0.0, 1.57), role=Role.PHASE)
+PHASE = EffectParameter("phase", "rad", -50.0, 50.0, 0.0, role=Role.PHASE)
 ROUNDING = Unlikely(
     NOTHING_NEW, "at a steady speed rounding beats with the samples, which swings with the angle too", steps=0.5
 )

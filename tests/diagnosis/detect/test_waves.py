@@ -48,7 +48,7 @@ def test_no_sine_begins_at_what_the_motion_itself_repeats(plant: BoundPlant, fly
     effect = library(plant)["elevation.periodic_torque"]
     target = disturbed_by(case, effect)
     assert target is not None
-    likely = likely_waves(linearisation, target)
+    likely = [wave.number for wave in likely_waves(linearisation, target)]
     begun = {start["rate"] for start in wave_starts(linearisation, effect)}
     assert begun < set(likely)
     # Independent of the code: the share of the arm's speed, by differences, that a sine and a cosine of a frequency explain.
