@@ -26,9 +26,10 @@ def quality_sentence(quality: Quality) -> str:
     return f"{word}: {'; '.join(told[:SAID])}{more}."
 
 
-def quality_told(quality: Quality, cause: str) -> str:
-    """The colour, and why it is not green; behind it, where it is known, the cause of that."""
-    return " ".join(filter(None, (quality_sentence(quality), cause)))
+def quality_told(quality: Quality, cause: str, before: str = "") -> str:
+    """The colour, and why it is not green; behind it, where it is known, the cause of that, but for lines that were told before."""
+    lines = [line for line in cause.splitlines() if line not in before.splitlines()]
+    return " ".join((quality_sentence(quality), *lines))
 
 
 def _size(look: Look) -> float:

@@ -103,6 +103,6 @@ def _tell(
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
     print()
     if why:
-        print(f"{quality_told(flight_quality(flight.tracking), why)}\n")
+        print(f"{quality_told(flight_quality(flight.tracking), why, gone)}\n")
     print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")

@@ -19,7 +19,14 @@ from sim.halving import StepError
 from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.quality import quality_told
-from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, left_sentence, tracking_facts, tracking_rows
+from twinlaw.pages.run.tracking import (
+    TRACKING_HEADING,
+    flight_quality,
+    left_sentence,
+    out_of_reach,
+    tracking_facts,
+    tracking_rows,
+)
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.causes import cause
 from twinlaw.workflows.chain.designing import design_controller
@@ -52,7 +59,8 @@ def run(chosen: argparse.Namespace) -> int:
     by_output = zip(bound.model.outputs, error.estimate.tolist(), strict=True)
     exact = [STEP_ERROR.look(name, value / bound.plant.sensors[name]) for name, value in by_output]
     quality = flight_quality(flight.tracking, exact)
-    why = cause(bound, table, chosen.arithmetic, flight.tracking) if generated else ""
+    beyond = "\n".join(out_of_reach(flight.tracking))
+    why = cause(bound, table, chosen.arithmetic, flight.tracking) if generated else beyond
     path = chosen.out / "simulation.csv"
     save_log(path, flight.log)
     gone = left(flight.tracking)
@@ -66,10 +74,10 @@ def run(chosen: argparse.Namespace) -> int:
         }
         print(json.dumps(facts | tracking_facts(flight.tracking) | {"quality": quality_facts(quality)}))
     else:
-        if told := left_sentence(flight.tracking):
-            print(f"{told}\n")
+        if first := left_sentence(flight.tracking):
+            print(f"{first}\n")
         print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
-        print(f"\n{_error_told(bound, error)}\n{quality_told(quality, why)}\n{path}")
+        print(f"\n{_error_told(bound, error)}\n{quality_told(quality, why, first)}\n{path}")
     return 0
 
 

@@ -9,7 +9,8 @@ from records.log import LogColumns, RunLog
 from records.loops import Loop
 from sim.activity import activity
 from sim.tracking import Tracking, tracking
-from twinlaw.pages.run.tracking import left_sentence
+from twinlaw.pages.quality import quality_told
+from twinlaw.pages.run.tracking import flight_quality, left_sentence, out_of_reach
 
 T_S = np.arange(100) * 0.01
 GOOD = Tracking(
@@ -50,3 +51,16 @@ def test_a_red_flight_whose_input_stands_at_its_limit_names_it_and_asks_for_smal
     assert "reference_max_m" in told
     assert "stands" not in left_sentence([tracking(log, loop)])
     assert left_sentence([replace(GOOD, at_limit_s=3.0)]) == ""
+
+
+def test_what_the_first_line_told_is_not_told_again_behind_the_colour() -> None:
+    """Truth: 10 % of overshoot are amber, and 30 % red; both with the input at its limit for 3 s."""
+    amber = replace(GOOD, at_limit_s=3.0, limit_V=2.0)
+    red = replace(amber, output="y_m", overshoot=0.3)
+    assert [line.startswith("i_A stands at its limit of 2 A") for line in out_of_reach([amber, red])] == [True, True]
+    first, quality = left_sentence([amber, red]), flight_quality([amber, red])
+    told = quality_told(quality, "\n".join(out_of_reach([amber, red])), first)
+    assert "references of y_m lie beyond" in first
+    assert "references of x_m lie beyond" in told
+    assert "references of y_m lie beyond" not in told
+    assert out_of_reach([replace(amber, overshoot=0.0)]) == []

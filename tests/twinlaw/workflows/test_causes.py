@@ -1,6 +1,7 @@
 """Why a flight is not green: told apart by flying the same law in double precision and in the other arithmetic."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,13 @@ def _flown(steady_m: float) -> tuple[Tracking, ...]:
     return (Tracking("x_m", 1, 0.0, 1.0, steady_m, steady_m, 0.0, "u_V", still, 0.1),)
 
 
+def _at_limit(steady_m: float) -> tuple[Tracking, ...]:
+    """The same with 2 V, the most that its input can do, for 3 s on end."""
+    return tuple(replace(entry, at_limit_s=3.0, limit_V=2.0) for entry in _flown(steady_m))
+
+
 GREEN, AMBER, RED = _flown(1e-4), _flown(1e-3), _flown(1e-2)
+BEYOND = r"^u_V stands at its limit of 2 V for 3 s on end: the references of x_m lie beyond what it can do\. Fly smaller ones"
 
 
 @pytest.mark.parametrize(
@@ -46,9 +53,14 @@ GREEN, AMBER, RED = _flown(1e-4), _flown(1e-3), _flown(1e-2)
             GREEN,
             r"double precision the same law is red.* it is the law, not its arithmetic\. Choose other poles",
         ),
+        (_at_limit(1e-4), GREEN, GREEN, ""),
+        (_at_limit(1e-3), AMBER, GREEN, BEYOND),
+        (_at_limit(1e-2), RED, GREEN, BEYOND),
+        (_at_limit(1e-3), GREEN, GREEN, r"lost in float32's .*, or --arithmetic fixed"),
+        ((*_at_limit(1e-4), *AMBER), AMBER, GREEN, r"it is the law, not its arithmetic\. Choose other poles"),
     ],
 )
-def test_the_arithmetic_is_to_blame_where_double_precision_flies_better(
+def test_the_arithmetic_is_to_blame_where_double_flies_better_and_a_limit_where_it_does_not(
     flown: Any, double: Any, fixed: Any, told: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def host(*_: object) -> ChainFlight:

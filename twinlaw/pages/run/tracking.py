@@ -1,7 +1,7 @@
 """How well a flight tracks its references, as rows of text and for a program."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -55,7 +55,7 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
 
 def left_sentence(tracking: Sequence[Tracking]) -> str:
     """That a flight did not stay with its references, where it did not, or that they lie beyond what an input can do; else empty."""
-    gone, beyond = left(tracking), [_beyond(entry) for entry in tracking if entry.is_out_of_reach and _is_red(entry)]
+    gone, beyond = left(tracking), out_of_reach(entry for entry in tracking if _is_red(entry))
     told = f"the flight left its references, {' and '.join(gone)}" if gone else ""
     holds_not = "this controller does not hold this plant"
     if beyond:
@@ -63,9 +63,13 @@ def left_sentence(tracking: Sequence[Tracking]) -> str:
     return f"{told}: {holds_not}" if told else ""
 
 
-def _beyond(entry: Tracking) -> str:
-    told = beyond_reach(entry.output, entry.input, entry.at_limit_s, entry.limit_V)
-    return f"{told}. {smaller(entry.output)}"
+def out_of_reach(tracking: Iterable[Tracking]) -> list[str]:
+    """That an output's references lie beyond what its input can do, and what makes them smaller, for each that is not green."""
+    return [
+        f"{beyond_reach(entry.output, entry.input, entry.at_limit_s, entry.limit_V)}. {smaller(entry.output)}"
+        for entry in tracking
+        if entry.is_out_of_reach and any(look.colour is not Colour.GREEN for look in tracking_looks(entry))
+    ]
 
 
 def _is_red(entry: Tracking) -> bool:

@@ -1,4 +1,4 @@
-"""Why a flight of the generated law is not green: its arithmetic, or the law itself, by flying the same law otherwise."""
+"""Why a flight of the generated law is not green: its arithmetic, an input at its limit, or the law itself, by flying it otherwise."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ from records.law_table import FlownTable
 from records.quality import RANK, Colour
 from sim.bind import BoundPlant
 from sim.tracking import Tracking
-from twinlaw.pages.run.tracking import error_told, flight_quality
+from twinlaw.pages.run.tracking import error_told, flight_quality, out_of_reach
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.flying import fly_double, fly_host
 
@@ -18,14 +18,14 @@ AS_ITSELF = (
 
 
 def cause(bound: BoundPlant, table: FlownTable, arithmetic: str, flown: Sequence[Tracking]) -> str:
-    """One sentence on what the same flight in double precision, and with another arithmetic, comes to; "" of a green flight, and
-    of one whose references lie beyond an input's reach."""
-    if (colour := _colour(flown)) is Colour.GREEN or any(entry.is_out_of_reach for entry in flown):
+    """What the same flight in double precision, and with another arithmetic, comes to, or a line for each input whose limit keeps it
+    from its references; "" of a green flight."""
+    if (colour := _colour(flown)) is Colour.GREEN:
         return ""
     exact = fly_double(bound, table).tracking
     ends = f"At rest it is off by {_off(flown)}; in double precision the same law is {_colour(exact)}, off by {_off(exact)}"
     if RANK[_colour(exact)] >= RANK[colour]:
-        return f"{ends}: {AS_ITSELF}."
+        return "\n".join(out_of_reach(flown)) or f"{ends}: {AS_ITSELF}."
     better = [name for name in ARITHMETICS if name != arithmetic and _is_better(bound, table, name, colour)]
     also = f", or --arithmetic {better[0]}, in which it flies better" if better else ""
     return f"{ends}: {LOST.format(arithmetic=arithmetic)}{also}."
