@@ -51,6 +51,7 @@ class Tracking:
     step_rad: float = 0.0
     at_limit_s: float = 0.0
     limit_V: float = 0.0
+    rest_limit_V: float | None = None
 
     @property
     def is_out_of_reach(self) -> bool:
@@ -117,6 +118,7 @@ def tracking(log: RunLog, loop: Loop, limits_V: tuple[float, float] = (-np.inf, 
     step = max((abs(hold.change) for hold in steps), default=0.0)
     band = SETTLED_RAD if unit_suffix(output) == "rad" else SETTLED_SHARE * step
     at_limit_s, limit_V = longest_at_limit(log.t_s, log.column(own_input), limits_V)
+    worst = max(zip(errors, holds, strict=True), key=lambda found: abs(found[0]), default=None)
     settling = [settling_s(log.t_s[hold.begin : hold.end], error[hold.begin : hold.end], band) for hold in steps]
     return Tracking(
         output=output,
@@ -131,15 +133,27 @@ def tracking(log: RunLog, loop: Loop, limits_V: tuple[float, float] = (-np.inf, 
         step_rad=step,
         at_limit_s=at_limit_s,
         limit_V=limit_V,
+        rest_limit_V=worst and _mostly_at(log.column(own_input)[_last(log.t_s, worst[1])], limits_V),
     )
 
 
 def longest_at_limit(t_s: Array, u_V: Array, limits_V: tuple[float, float]) -> tuple[float, float]:
     """The longest time without a pause at one of its limits, and which; 0 of an input without limits."""
+    at = _at(u_V, limits_V)
+    return max(((_longest_s(t_s, where), limit) for limit, where in at.items()), default=(0.0, 0.0))
+
+
+def _mostly_at(u_V: Array, limits_V: tuple[float, float]) -> float | None:
+    """The limit at which more than half of the samples stand, if there is one."""
+    return next((limit for limit, where in _at(u_V, limits_V).items() if np.mean(where) > 0.5), None)
+
+
+def _at(u_V: Array, limits_V: tuple[float, float]) -> dict[float, NDArray[np.bool_]]:
+    """By limit the samples that stand at it; none of an input without limits."""
     low, high = limits_V
     if not np.isfinite(high - low):
-        return 0.0, 0.0
-    return max((_longest_s(t_s, np.abs(u_V - limit) <= AT_LIMIT_SHARE * (high - low)), limit) for limit in limits_V)
+        return {}
+    return {limit: np.abs(u_V - limit) <= AT_LIMIT_SHARE * (high - low) for limit in limits_V}
 
 
 def _longest_s(t_s: Array, where: NDArray[np.bool_]) -> float:

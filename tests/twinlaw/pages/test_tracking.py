@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from records.log import LogColumns, RunLog
 from records.loops import Loop
 from sim.activity import activity
 from sim.tracking import Tracking, tracking
 from twinlaw.pages.quality import quality_told
-from twinlaw.pages.run.tracking import flight_quality, left_sentence, out_of_reach
+from twinlaw.pages.run.tracking import flight_quality, left_sentence, out_of_reach, tracking_facts
 
 T_S = np.arange(100) * 0.01
 GOOD = Tracking(
@@ -64,3 +65,28 @@ def test_what_the_first_line_told_is_not_told_again_behind_the_colour() -> None:
     assert "references of x_m lie beyond" in told
     assert "references of y_m lie beyond" not in told
     assert out_of_reach([replace(amber, overshoot=0.0)]) == []
+
+
+def test_an_input_that_a_sensors_steps_move_off_its_limit_for_some_samples_rests_there() -> None:
+    """Truth: of 300 samples from 2 s on, all at 2 A but each fourth; x rests 1 mm short of 100 mm, which is amber. A loop that
+    throws its input from one limit to the other, a third of the time at each, rests at none."""
+    t_s = np.arange(600) * 0.01
+    loop = Loop("x", "x_m", "i_A", "motor")
+    columns = LogColumns("slide", ("i_A",), ("x_m",), (), ("x",))
+    reference = np.where(t_s < 1.0, 0.0, 0.1)
+    settled = np.where(t_s < 1.5, reference, 0.099)[:, None]
+
+    def flown(i_A: NDArray[np.float64]) -> Tracking:
+        log = RunLog(columns, 0.01, "closed", t_s, i_A[:, None], settled, {"x_ref_m": reference})
+        return tracking(log, loop, (-2.0, 2.0))
+
+    resting = flown(np.where((t_s > 2.0) & (np.arange(600) % 4 > 0), 2.0, 1.5))
+    assert resting.at_limit_s < 0.1
+    assert resting.rest_limit_V == 2.0
+    told = (
+        "i_A stands at its limit of 2 A for most of the second before the next step: the references of x_m lie beyond"
+    )
+    assert [line.startswith(told) for line in out_of_reach([resting])] == [True]
+    assert tracking_facts([resting])["tracking"]["x_m"]["rest_limit_A"] == 2.0
+    assert out_of_reach([replace(resting, steady_error_rad=0.0)]) == []
+    assert flown(2.0 * (np.arange(600) % 3 - 1.0)).rest_limit_V is None

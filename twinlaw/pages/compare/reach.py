@@ -7,7 +7,7 @@ from records.quality import Colour
 from sim.tracking import OUT_OF_REACH_S, longest_at_limit
 from twinlaw.pages.compare.comparison import Compared
 from twinlaw.pages.compare.quality import axis_looks
-from twinlaw.pages.reach import beyond_reach, smaller
+from twinlaw.pages.reach import LONG, beyond_reach, smaller
 
 
 def reach_sentences(rows: Sequence[Compared], figure: str, is_papers: bool) -> list[str]:
@@ -19,7 +19,7 @@ def reach_sentences(rows: Sequence[Compared], figure: str, is_papers: bool) -> l
         stood = {name: found for name, found in stood.items() if found[0] >= OUT_OF_REACH_S}
         for limit_V in dict.fromkeys(limit for _, limit in stood.values()):
             under = {name: at_s for name, (at_s, limit) in stood.items() if limit == limit_V}
-            sentence = beyond_reach(loop.output, loop.input, min(under.values()), limit_V)
+            sentence = beyond_reach(loop.output, loop.input, limit_V, LONG.format(min(under.values())))
             told.append(f"{', '.join(under)}: {sentence}" + ("" if is_papers else f". {smaller(loop.output)}"))
     return told
 

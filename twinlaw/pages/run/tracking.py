@@ -11,7 +11,7 @@ from sim.tracking import Tracking, left
 from twinlaw.pages.measured import settling_text, small
 from twinlaw.pages.page import Row
 from twinlaw.pages.quality import colour_of
-from twinlaw.pages.reach import beyond_reach, smaller
+from twinlaw.pages.reach import LONG, MOSTLY, beyond_reach, smaller
 
 TRACKING_HEADING: Row = (
     "tracking",
@@ -65,11 +65,16 @@ def left_sentence(tracking: Sequence[Tracking]) -> str:
 
 def out_of_reach(tracking: Iterable[Tracking]) -> list[str]:
     """That an output's references lie beyond what its input can do, and what makes them smaller, for each that is not green."""
-    return [
-        f"{beyond_reach(entry.output, entry.input, entry.at_limit_s, entry.limit_V)}. {smaller(entry.output)}"
-        for entry in tracking
-        if entry.is_out_of_reach and any(look.colour is not Colour.GREEN for look in tracking_looks(entry))
-    ]
+    beyond = ((entry, _beyond(entry)) for entry in tracking)
+    return [f"{told}. {smaller(entry.output)}" for entry, told in beyond if told]
+
+
+def _beyond(entry: Tracking) -> str:
+    if entry.is_out_of_reach and any(look.colour is not Colour.GREEN for look in tracking_looks(entry)):
+        return beyond_reach(entry.output, entry.input, entry.limit_V, LONG.format(entry.at_limit_s))
+    if entry.rest_limit_V is not None and entry.holds and _steady(entry).colour is not Colour.GREEN:
+        return beyond_reach(entry.output, entry.input, entry.rest_limit_V, MOSTLY)
+    return ""
 
 
 def _is_red(entry: Tracking) -> bool:
@@ -112,7 +117,8 @@ def tracking_facts(tracking: Sequence[Tracking]) -> dict[str, Any]:
 
 def _facts(entry: Tracking) -> dict[str, Any]:
     """By names in the units of this output and its input."""
-    units = {"_rad": unit_suffix(entry.output), "_V_s": f"{unit_suffix(entry.input)}_s".lstrip("_")}
+    of_input = unit_suffix(entry.input)
+    units = {"_rad": unit_suffix(entry.output), "_V": of_input, "_V_s": f"{of_input}_s".lstrip("_")}
 
     def own(name: str) -> str:
         ending = next((ending for ending in units if name.endswith(ending)), None)
