@@ -33,8 +33,9 @@ def gaps(t_s: Array) -> Rows:
 
 
 def break_findings(log: RunLog, name: str) -> Iterator[Found]:
-    """Notes on a last row written in part, on inputs that begin late, on stamps too coarse to tell rows apart, on rows out of order, on
-    other recordings in the file, and on stretches without rows, behind which the log goes on as another one."""
+    """Notes on rows in which nothing was written, or of the last one a part, on inputs that begin late, on stamps too coarse to tell rows
+    apart, on rows out of order, on other recordings in the file, and on stretches without rows, behind which the log goes on as another
+    one."""
     if log.half_row:
         end_s = float(log.t_s[-1])
         yield Found(Finding("half_row", name, None, end_s, end_s, log.half_row.told, rows=1))
@@ -46,6 +47,10 @@ def break_findings(log: RunLog, name: str) -> Iterator[Found]:
     if log.spread:
         span = (float(log.t_s[0]), float(log.t_s[-1]))
         yield Found(Finding("coarse_stamps", name, "t_s", *span, f"t_s: {log.spread.told}", rows=log.spread.rows))
+    if log.unwritten:
+        count, first_s = log.unwritten.rows, log.unwritten.first_s
+        sentence = f"nothing was written in {in_words(count, 'row')}, first at {first_s:.6g} s; left out"
+        yield Found(Finding("unwritten_rows", name, None, first_s, first_s, sentence, rows=count))
     if log.disordered:
         count, first_s = log.disordered.rows, log.disordered.first_s
         sentence = f"t_s: {in_words(count, 'row')} whose time does not rise, first at {first_s:.6g} s; left out"

@@ -17,6 +17,7 @@ from records.logs.clock import demand_seconds
 from records.logs.coarse_stamps import Spread, own_times
 from records.logs.restarts import Restart, counted_on, on_one_clock, restart_rows
 from records.logs.source import Source, parse_source, source_table
+from records.logs.unwritten import Unwritten, unwritten_rows
 from records.text import checks
 from records.text.last_row import HalfRow
 from records.text.log_csv import read_whole_rows, rows_text
@@ -69,8 +70,8 @@ class RunLog:
     `arithmetic` in which its law computed: DOUBLE is a simulation's own, in which no firmware flew; None where nobody said.
     `source` the published recording that the log was imported from, None for a log of this project's own making; `restarts` are where
     another recording of the same file begins, whose times are counted on; `late_inputs` begin behind a recording's first row;
-    `disordered` are rows of the file that were left out, `spread` those whose stamps were too coarse to tell them apart, `half_row` the
-    last one where it was written in part.
+    `disordered` and `unwritten` are rows of the file that were left out, `spread` those whose stamps were too coarse to tell them apart,
+    `half_row` the last one where it was written in part.
     """
 
     columns: LogColumns
@@ -88,6 +89,7 @@ class RunLog:
     restarts: tuple[Restart, ...] = ()
     late_inputs: tuple[LateInput, ...] = ()
     disordered: Disordered | None = None
+    unwritten: Unwritten | None = None
     spread: Spread | None = None
     half_row: HalfRow | None = None
 
@@ -168,7 +170,8 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are, and times that begin again count on.
 
     Rows in front of an input's first number are left out, as nobody knows what moved the plant there, and a few whose time does not
-    rise, and a last row that was written in part; samples of one stamp get times of their own where the number of rows tells them.
+    rise, rows in which nothing was written, and a last one that was written in part; samples of one stamp get times of their own where
+    the number of rows tells them.
     Raises BadInput naming file, line and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated
     row, a number that is none, time that does not increase, an input that is not finite, a time in another unit.
     """
@@ -180,11 +183,15 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     begins = restart_rows(data["t_s"])
     data["t_s"], restarts = on_one_clock(data["t_s"])
     readings = np.column_stack([data[name] for name in columns.outputs])
+    commands = np.stack([data[name] for name in columns.inputs], axis=1) if columns.inputs else np.zeros((len(rows), 0))
     data["t_s"], spread = own_times(data["t_s"], readings, str(path))
     kept, late_inputs = _from_the_inputs(data, begins, columns)
     rising = _rising(data["t_s"])
     disordered = None if rising.all() else _disordered(data["t_s"], readings, rising)
     kept &= rising
+    empty = kept & unwritten_rows(commands, readings, [data[name] for name in names if name in columns.optional])
+    unwritten = Unwritten(int(empty.sum()), float(data["t_s"][empty][0])) if empty.any() else None
+    kept &= ~empty
     _check_numbers(data, kept, str(path), columns)
     demand_seconds(data["t_s"], float(sidecar["sample_period_s"]), str(path))
     seq = counted_on(data["seq"].astype(np.int64), begins)[kept] if "seq" in data else None
@@ -194,9 +201,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         sample_period_s=float(sidecar["sample_period_s"]),
         loop=sidecar["loop"],
         t_s=data["t_s"].copy(),
-        u=np.stack([data[name] for name in columns.inputs], axis=1)
-        if columns.inputs
-        else np.zeros((int(kept.sum()), 0)),
+        u=commands[kept],
         y=np.column_stack([data[name] for name in columns.outputs]),
         extra={name: data[name].copy() for name in names if name in columns.optional},
         seq=seq,
@@ -206,6 +211,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         restarts=restarts,
         late_inputs=late_inputs,
         disordered=disordered,
+        unwritten=unwritten,
         spread=spread,
         half_row=half_row,
     )

@@ -122,3 +122,16 @@ def test_a_last_row_that_was_written_in_part_is_told(tmp_path: Path) -> None:
     assert len(read.t_s) == len(log.t_s) - 1
     (finding,) = [entry for entry in examine([read], PLANT, names=["a"]).findings if entry.kind == "half_row"]
     assert "line 2001, the last" in finding.sentence
+
+
+def test_rows_in_which_nothing_was_written_are_said_and_what_four_of_them_part_is_another_log(tmp_path: Path) -> None:
+    """Truth: a logger lost five records in a row and left zeros beside their times, where the axis is far from 0."""
+    log = log_of()
+    first = int(np.flatnonzero(np.abs(log.y[:, 0]) > 60 * STEP_RAD)[10])
+    lost = np.isin(np.arange(len(log.t_s)), np.arange(first, first + 5))
+    zeroed = replace(log, u=np.where(lost[:, None], 0.0, log.u), y=np.where(lost[:, None], 0.0, log.y))
+    looked = examine([read_back(zeroed, tmp_path)], PLANT, names=["a"])
+    (said,) = [entry for entry in looked.findings if entry.kind == "unwritten_rows"]
+    assert said.sentence == f"nothing was written in 5 rows, first at {log.t_s[first]:.6g} s; left out"
+    assert np.flatnonzero(looked.logs[0].begins).tolist() == [first]
+    assert not any(entry.kind == "zero_reading" for entry in looked.findings)

@@ -207,3 +207,43 @@ def test_where_the_sidecar_cannot_be_written_no_log_stays_behind(tmp_path):
     with pytest.raises(BadInput, match="output file"):
         save_log(tmp_path / "run.csv", random_log())
     assert not (tmp_path / "run.csv").exists()
+
+
+def flight(rows=400):
+    """An elevation that swings about -0.3 rad in steps of an encoder beside commands of 5 V, and an azimuth that swings about 0."""
+    t_s = 0.01 * np.arange(rows)
+    y = np.column_stack([-0.3 + 0.1 * np.sin(3.0 * t_s), 0.02 * np.sin(2.0 * t_s)])
+    u = np.column_stack([5.0 + np.sin(3.0 * t_s), 1.0 + np.cos(2.0 * t_s)])
+    return RunLog(COLUMNS, 0.01, "closed", t_s, u, 0.001 * np.round(y / 0.001), {"psi_ref_rad": np.full(rows, -0.3)})
+
+
+@pytest.mark.parametrize("stands", [0.0, np.nan])
+def test_rows_in_which_nothing_was_written_are_left_out_and_said(tmp_path, stands):
+    """Truth: a logger lost 5 % of its records, once five in a row, and left zeros or empty cells beside their times."""
+    log = flight()
+    lost = np.zeros(400, bool)
+    lost[10:390:20] = lost[200:205] = True
+    y, u, reference = log.y.copy(), log.u.copy(), log.extra["psi_ref_rad"].copy()
+    y[lost], u[lost], reference[lost] = stands, stands, stands
+    text = csv_text(RunLog(COLUMNS, 0.01, "closed", log.t_s, u, y, {"psi_ref_rad": reference}))
+    (tmp_path / "a.csv").write_text(text.replace("nan", ""))
+    (tmp_path / "a.toml").write_text(SIDECAR)
+    read = load_log(tmp_path / "a.csv", COLUMNS)
+    assert read.unwritten is not None
+    assert (read.unwritten.rows, read.unwritten.first_s) == (lost.sum(), log.t_s[10])
+    np.testing.assert_array_equal(read.t_s, log.t_s[~lost])
+    np.testing.assert_array_equal(read.u, log.u[~lost])
+    np.testing.assert_array_equal(read.y, log.y[~lost])
+
+
+def test_rows_of_zeros_that_a_plant_can_hold_are_rows(tmp_path):
+    """Truth: a plant that passes zero, one that is switched off in every second row, and one that rests at zero before it is driven."""
+    t_s = 0.01 * np.arange(400)
+    passing = np.column_stack([np.round(5.0 * np.sin(3.0 * t_s), 1)] * 2)
+    switched = np.column_stack([np.where(np.arange(400) % 2, 5.0, 0.0)] * 2)
+    resting = np.column_stack([np.where(np.arange(400) < 100, 0.0, 5.0)] * 2)
+    for u, y in ((passing, 0.001 * np.round(50.0 * passing)), (switched, 0.1 * switched), (resting, 0.1 * resting)):
+        save_log(tmp_path / "a.csv", RunLog(COLUMNS, 0.01, "open", t_s, u, y))
+        read = load_log(tmp_path / "a.csv", COLUMNS)
+        assert read.unwritten is None
+        np.testing.assert_array_equal(read.u, u)
