@@ -2,6 +2,11 @@
 
 from records.deciding import Limit
 
+# runs: where windows begin
+AT_RANDOM = Limit(
+    0.2, "share of the steps", "that are longer than usual: with more, rows come at random times, and none are missing"
+)
+
 # uncertainty: what two sets of data say of one parameter
 CONTRADICTS = Limit(
     5.0,

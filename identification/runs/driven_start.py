@@ -1,4 +1,7 @@
-"""How a log's driven states began, which no window's start can tell: waited for until it no longer shows, or estimated."""
+"""How a log's driven states began, which no window's start can tell: waited for until it no longer shows, or estimated.
+
+Where rows are missing they are estimated with the start of each window, as far as the commands that nobody knows may have moved them.
+"""
 
 from dataclasses import dataclass
 
@@ -7,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from identification.model.driven import driven_model
 from identification.model.subsystem import subsystem
+from identification.runs.rows import behind_missing_rows
 from identification.runs.run import Carried
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -33,7 +37,7 @@ class DrivenStart:
 
 def driven_start(bound: BoundPlant, log: RunLog, at_first: ArrayLike | None) -> DrivenStart:
     """From `at_first` (states,) where it is given, else from rest, or where they are read from the first reading, once that no longer
-    shows, else free in each window.
+    shows, else free in each window; free as well behind missing rows.
 
     Free ones are guessed where the first row's inputs would have brought them; without driven states there is nothing to know.
     """
@@ -47,12 +51,15 @@ def driven_start(bound: BoundPlant, log: RunLog, at_first: ArrayLike | None) -> 
     u = np.ascontiguousarray(log.u[:, [model.inputs.index(variable) for variable in part.inputs]])
     rest = _first_read(bound, log, part)
     forgotten_s = _forgotten_s(own, log.t_s, u, rest)
+    names = tuple(map(str, part.states))
     if forgotten_s <= MOST_WAITED * (log.t_s[-1] - log.t_s[0]):
-        return DrivenStart(Carried(own, rest), forgotten_s, (), known)
+        missing = behind_missing_rows(log)
+        if not missing.size:
+            return DrivenStart(Carried(own, rest), forgotten_s, (), known)
+        left = _left_of_missing_rows(own, log.t_s, u, rest, missing)
+        return DrivenStart(Carried(own, rest), forgotten_s, names, left)
     held = _run_on(own, log.t_s, np.tile(u[0], (log.t_s.size, 1)), rest)[-1]
-    return DrivenStart(
-        Carried(own, held), 0.0, tuple(map(str, part.states)), _left_of_others(own, log.t_s, u, held, rest)
-    )
+    return DrivenStart(Carried(own, held), 0.0, names, _left_of_others(own, log.t_s, u, held, rest))
 
 
 def _first_read(bound: BoundPlant, log: RunLog, part: Model) -> Array:
@@ -79,6 +86,17 @@ def _left_of_others(driven: BoundPlant, t_s: Array, u: Array, x0: Array, rest: A
     reach = np.max(np.abs(_run_on(driven, t_s, largest, rest)), axis=0)
     left = np.abs(_run_on(driven, t_s, u, x0 + reach) - _run_on(driven, t_s, u, x0))
     return np.asarray(np.maximum(left, FORGOTTEN * reach))
+
+
+def _left_of_missing_rows(driven: BoundPlant, t_s: Array, u: Array, x0: Array, behind: NDArray[np.int64]) -> Array:
+    """What is left, row by row (n, driven), of commands in missing rows that were off by as much as an input usually moves in a row."""
+    steps = np.diff(t_s)[behind - 1] / np.median(np.diff(t_s))
+    usual = np.sqrt(np.mean(np.diff(u, axis=0) ** 2, axis=0))
+    other = u.copy()
+    other[behind - 1] += usual * (1.0 - 1.0 / steps)[:, None]
+    still = _run_on(driven, t_s, u, x0)
+    left = np.abs(_run_on(driven, t_s, other, x0) - still)
+    return np.asarray(np.maximum(left, FORGOTTEN * np.max(np.abs(still), axis=0)))
 
 
 def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:

@@ -9,6 +9,7 @@ from identification.model.driven import driven_model
 from identification.model.locked import locked_model
 from identification.model.subsystem import subsystem
 from identification.runs.driven_start import driven_start
+from identification.runs.rows import behind_missing_rows
 from identification.runs.run import Run
 from identification.runs.window_starts import window_starts
 from records.errors import BadInput
@@ -22,7 +23,8 @@ Array = NDArray[np.float64]
 def log_run(
     bound: BoundPlant, log: RunLog, name: str, window_s: float, every: int = 1, at_first: ArrayLike | None = None
 ) -> Run:
-    """The measured outputs of a log as readings, windows of `window_s` (inf: one for the whole log), of which each `every`th is kept.
+    """The measured outputs of a log as readings, windows of `window_s` (inf: one for the whole log), of which each `every`th is kept; none
+    runs over missing rows.
 
     A reading's error is that of `rounding_sd`. Rows where nothing was measured give no reading. States that only the inputs drive run on
     from those of `at_first` (states,) at the first row; where these are not given a log is used once they no longer matter, and one that
@@ -31,7 +33,7 @@ def log_run(
     """
     _check(bound, log, name)
     model, driven = bound.model, driven_start(bound, log, at_first)
-    begins, stops = _windows(log.t_s, window_s, every, driven.known_after_s)
+    begins, stops = _windows(log, window_s, every, driven.known_after_s)
     used = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
     rows = np.isfinite(log.y) & np.isin(np.arange(log.t_s.size), used)[:, None]
     select = np.flatnonzero(rows.ravel())
@@ -112,11 +114,14 @@ def rounding_sd(readings: Array, step: float, noise: float = 0.0) -> Array:
     return np.sqrt(step**2 / 12.0 * repeats + noise**2)
 
 
-def _windows(t_s: Array, window_s: float, every: int, from_s: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """First rows of windows of about `window_s`, and the rows behind their last; `from_s` at the beginning is left out."""
+def _windows(log: RunLog, window_s: float, every: int, from_s: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """First rows of windows of `window_s` and less, and the rows behind their last; `from_s` at the beginning is left out."""
+    t_s = log.t_s
     first_s = t_s[0] + from_s
     count = max(1, round((t_s[-1] - first_s) / window_s)) if np.isfinite(window_s) else 1
     edges = first_s + (t_s[-1] - first_s) * np.arange(count) / count
-    begins = np.unique(np.searchsorted(t_s, edges - 1e-9)).astype(np.int64)
+    even = np.searchsorted(t_s, edges - 1e-9)
+    missing = behind_missing_rows(log)
+    begins = np.union1d(even, missing[missing > even[0]]).astype(np.int64)
     stops = np.append(begins[1:], t_s.size).astype(np.int64)
     return begins[::every], stops[::every]

@@ -1,10 +1,12 @@
-"""Which rows of a log count: a part of its time, or all but those whose readings are in doubt."""
+"""Which rows of a log count: a part of its time, all but those whose readings are in doubt, and where some are missing."""
 
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from identification import thresholds
+from logcheck.thresholds import GAP_PERIODS
 from records.errors import BadInput
 from records.log import RunLog
 
@@ -25,3 +27,15 @@ def trimmed(log: RunLog, begin_s: float, end_s: float) -> RunLog:
 def without_readings(log: RunLog, rows: NDArray[np.bool_]) -> RunLog:
     """The log with nothing measured in these of its rows (n,); their times and inputs stand."""
     return replace(log, y=np.where(rows[:, None], np.nan, log.y)) if np.any(rows) else log
+
+
+def behind_missing_rows(log: RunLog) -> NDArray[np.int64]:
+    """The rows in front of which others are missing while an input changed: what was commanded there, nobody knows.
+
+    None where rows come at random times: then an input holds from row to row.
+    """
+    steps = np.diff(log.t_s)
+    missing = steps > GAP_PERIODS * np.median(steps)
+    if missing.mean() > thresholds.AT_RANDOM:
+        return np.zeros(0, np.int64)
+    return np.flatnonzero(missing & (np.diff(log.u, axis=0) != 0.0).any(axis=1)) + 1

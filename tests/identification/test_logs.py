@@ -8,6 +8,7 @@ import pytest
 
 from identification.fit.belief import Belief, stated
 from identification.runs.log_run import run_of
+from identification.runs.rows import behind_missing_rows
 from identification.search.methods import Search
 from identification.stages.best_fit import apart_sd, best_fit, nothing_left
 from identification.stages.estimate import interval_factor
@@ -90,6 +91,35 @@ def test_jittered_times_and_lost_samples_do_no_harm(bound, flown):
     found = identify_logs(off(bound, {"J_A": 1.2, "b_vA": 0.8}), {"log": log}, ("J_A", "b_vA"))
     assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
     assert found.belief.value("b_vA") == pytest.approx(bound.parameter("b_vA"), rel=0.02)
+
+
+def without_rows(log: RunLog, lost: np.ndarray) -> RunLog:
+    """A logger lost these rows (n,); the others' times and commands stand."""
+    return replace(log, t_s=log.t_s[~lost], u=log.u[~lost], y=log.y[~lost], extra={})
+
+
+@pytest.mark.parametrize(("share", "seed", "most"), [(0.01, 1, 0.002), (0.05, 3, 0.02)])
+def test_rows_that_a_logger_lost_in_a_closed_loop_bend_no_estimate(bound, flown, share, seed, most):
+    """Truth: the law went on commanding in the rows that are missing, which no row beside them tells. True values within 3 sd; J_A has one
+    of so much of its value at most."""
+    flight = cut(flown, 64.0, 40.0)
+    lost = np.random.default_rng(seed).random(len(flight.t_s)) < share
+    names = ("J_E", "b_vE", "J_A", "b_vA")
+    found = identify_logs(bound, {"flight": without_rows(flight, lost)}, names).belief
+    for name, sd in zip(found.names, found.sd, strict=True):
+        assert abs(found.value(name) - bound.parameter(name)) < 3.0 * sd, name
+    assert found.sd[found.names.index("J_A")] < most * bound.parameter("J_A")
+
+
+def test_windows_begin_anew_behind_missing_rows_alone_where_an_input_changed(bound, flown):
+    """Truth: three rows lost singly, one while both inputs rested; rows that come at random times lack none."""
+    flight = cut(flown, 64.0, 10.0)
+    u = flight.u.copy()
+    u[598:603] = u[598]
+    lost = np.isin(np.arange(len(u)), (300, 600, 800))
+    assert behind_missing_rows(without_rows(replace(flight, u=u), lost)).tolist() == [300, 798]
+    at_random = np.random.default_rng(2).random(len(u)) < 0.5
+    assert not behind_missing_rows(without_rows(flight, at_random)).size
 
 
 def test_a_whole_log_that_claims_more_than_numbers_hold_is_not_believed(bound, flown):
