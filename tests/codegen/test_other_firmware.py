@@ -66,10 +66,15 @@ def test_a_build_with_nothing_said_of_contraction_gives_the_twin_s_bits(
     if compiler == "zig":
         assert mismatches(generated(), [level, *flags.split()]) == 0
         return
-    written(tmp_path, generated())
-    done = compiled(["gcc"], tmp_path, "-shared", "-fPIC", level, *flags.split(), *SOURCES, "-o", "law.so")
+    assert gcc_mismatches(tmp_path, level, *flags.split()) == 0
+
+
+def gcc_mismatches(folder: Path, *flags: str) -> int:
+    """What the self-test finds in gcc's build."""
+    written(folder, generated())
+    done = compiled(["gcc"], folder, "-shared", "-fPIC", *flags, *SOURCES, "-o", "law.so")
     assert done.returncode == 0, done.stderr
-    assert load_shared("uint32_t law_self_test(void);", tmp_path / "law.so")[1].law_self_test() == 0
+    return int(load_shared("uint32_t law_self_test(void);", folder / "law.so")[1].law_self_test())
 
 
 REASONED = "without -ffast-math and without its parts"
@@ -99,6 +104,12 @@ def test_what_may_change_bits_does_not_compile_and_says_why(
 def test_clang_keeps_the_order_of_a_sum_where_it_is_allowed_to_change_it() -> None:
     """It defines no macro for it, so that the source has to forbid it."""
     assert mismatches(generated(), ["-O2", "-mavx2", *PARTS.split()]) == 0
+
+
+@pytest.mark.parametrize("flags", ["-fassociative-math", "-fassociative-math -fno-trapping-math"])
+def test_gcc_keeps_the_order_of_a_sum_where_it_says_that_it_will(flags: str, tmp_path: Path) -> None:
+    """Alone the option is disabled, with a warning and without a macro; but any `optimize` of a source brings it back."""
+    assert gcc_mismatches(tmp_path, "-O2", *flags.split()) == 0
 
 
 CORES = {"cortex_m0plus": "eabi", "cortex_m4+vfp4d16sp": "eabihf", "cortex_m7+fp_armv8d16": "eabihf"}
