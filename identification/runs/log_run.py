@@ -9,7 +9,7 @@ from identification.model.driven import driven_model
 from identification.model.locked import locked_model
 from identification.model.subsystem import subsystem
 from identification.runs.driven_start import driven_start
-from identification.runs.rows import behind_missing_rows
+from identification.runs.rows import behind_missing_rows, read_again
 from identification.runs.run import Run
 from identification.runs.window_starts import window_starts
 from records.errors import BadInput
@@ -24,7 +24,7 @@ def log_run(
     bound: BoundPlant, log: RunLog, name: str, window_s: float, every: int = 1, at_first: ArrayLike | None = None
 ) -> Run:
     """The measured outputs of a log as readings, windows of `window_s` (inf: one for the whole log), of which each `every`th is kept; none
-    runs over missing rows.
+    runs over missing rows, and another begins where an output is read again.
 
     A reading's error is that of `rounding_sd`. Rows where nothing was measured give no reading. States that only the inputs drive run on
     from those of `at_first` (states,) at the first row; where these are not given a log is used once they no longer matter, and one that
@@ -121,7 +121,7 @@ def _windows(log: RunLog, window_s: float, every: int, from_s: float) -> tuple[N
     count = max(1, round((t_s[-1] - first_s) / window_s)) if np.isfinite(window_s) else 1
     edges = first_s + (t_s[-1] - first_s) * np.arange(count) / count
     even = np.searchsorted(t_s, edges - 1e-9)
-    missing = behind_missing_rows(log)
-    begins = np.union1d(even, missing[missing > even[0]]).astype(np.int64)
+    anew = np.concatenate([behind_missing_rows(log), read_again(log)])
+    begins = np.union1d(even, anew[anew > even[0]]).astype(np.int64)
     stops = np.append(begins[1:], t_s.size).astype(np.int64)
     return begins[::every], stops[::every]

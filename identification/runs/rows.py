@@ -1,4 +1,4 @@
-"""Which rows of a log count: a part of its time, all but those whose readings are in doubt, and where some are missing."""
+"""Which rows of a log count: a part of its time, all but those whose readings are in doubt, and where some are missing, or readings."""
 
 from dataclasses import replace
 
@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification import thresholds
-from logcheck.thresholds import GAP_PERIODS
+from logcheck.breaks import gaps
+from logcheck.thresholds import BRIDGED_ROWS, GAP_PERIODS
 from records.errors import BadInput
 from records.log import RunLog
 
@@ -39,3 +40,14 @@ def behind_missing_rows(log: RunLog) -> NDArray[np.int64]:
     if missing.mean() > thresholds.AT_RANDOM:
         return np.zeros(0, np.int64)
     return np.flatnonzero(missing & (np.diff(log.u, axis=0) != 0.0).any(axis=1)) + 1
+
+
+def read_again(log: RunLog) -> NDArray[np.int64]:
+    """The rows in which an output is read again, or at last, behind more readings missing than rows are bridged."""
+    found = [np.zeros(0, np.int64)]
+    for y in log.y.T:
+        rows = np.flatnonzero(np.isfinite(y))
+        found.append(rows[gaps(log.t_s[rows])])
+        if rows.size and rows[0] > BRIDGED_ROWS:
+            found.append(rows[:1])
+    return np.unique(np.concatenate(found))

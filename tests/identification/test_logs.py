@@ -8,7 +8,7 @@ import pytest
 
 from identification.fit.belief import Belief, stated
 from identification.runs.log_run import run_of
-from identification.runs.rows import behind_missing_rows
+from identification.runs.rows import behind_missing_rows, read_again
 from identification.search.methods import Search
 from identification.stages.best_fit import apart_sd, best_fit, nothing_left
 from identification.stages.estimate import interval_factor
@@ -109,6 +109,18 @@ def test_rows_that_a_logger_lost_in_a_closed_loop_bend_no_estimate(bound, flown,
     for name, sd in zip(found.names, found.sd, strict=True):
         assert abs(found.value(name) - bound.parameter(name)) < 3.0 * sd, name
     assert found.sd[found.names.index("J_A")] < most * bound.parameter("J_A")
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_an_output_that_was_not_read_for_a_while_leaves_no_misfit(bound, flown, first):
+    """Truth: the model is the rig's; a reading of psi is off by rounding alone, where it is read: not in the first three seconds."""
+    flight = cut(flown, 0.0, 40.0)
+    unread = (np.arange(len(flight.t_s)) >= first) & (flight.t_s < 3.0)
+    log = replace(flight, y=np.where(unread[:, None] & [True, False], np.nan, flight.y))
+    found = identify_logs(bound, {"flight": log}, ("J_E", "b_vE", "J_A", "b_vA"))
+    (psi,) = [test for test in found.residuals if test.channel == "psi_rad"]
+    assert psi.rms < 1.5 * psi.noise
+    assert read_again(log).tolist() == [300]
 
 
 def test_windows_begin_anew_behind_missing_rows_alone_where_an_input_changed(bound, flown):
