@@ -22,8 +22,10 @@ from sim.columns import log_columns
 from sim.manoeuvres import at_rest
 from sim.runs.stepped import SteppedPlant
 from sim.wiring import Wiring, wiring
+from twinlaw.cli.console import stage
 from twinlaw.cli.options import is_log
 from twinlaw.watching.board import BoardSource
+from twinlaw.watching.doubts import columns_in_doubt
 from twinlaw.watching.replay import LogSource
 from twinlaw.watching.source import Source, signals
 from twinlaw.workflows.chain.boards import board_url
@@ -56,7 +58,9 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
         log = load_log(Path(asked.port), log_columns(bound.model))
         looked = examine([log], without_effects(bound), names=[Path(asked.port).stem])
         demand(looked, OTHER_NUMBERS)
-        odd = "".join(f"; {note.said}" for note in looked.notes)
+        with stage("asking whether the columns are what they are called"):
+            doubts = columns_in_doubt(bound, log, looked)
+        odd = "".join(f"; {said}" for said in (*doubts, *(note.said for note in looked.notes)))
         first_s = float(log.t_s[0])
         counted = f"; times of the curves count from {first_s:g} s of the log" if first_s else ""
         who = f"log {asked.port}, twin {asked.plant}{odd}{counted}"

@@ -369,6 +369,23 @@ def test_a_log_that_begins_late_says_from_where_the_page_counts(carried: Path, t
     assert "count from" not in told["hop"]
 
 
+def test_a_log_whose_columns_are_likelier_others_is_shown_and_that_is_told(carried: Path, tmp_path: Path) -> None:
+    """Truth: both angles were exchanged in one copy of a flight, and the commands logged a row late in another."""
+    log = load_log(carried / "hop.csv", log_columns(MODELS["ce150"]()))
+    late = replace(log, u=log.u[[0, *range(len(log.u) - 1)]])
+    save_log(tmp_path / "exchanged.csv", replace(log, y=log.y[:, ::-1]))
+    save_log(tmp_path / "late.csv", late)
+    told = {}
+    for name, folder in (("hop", carried), ("exchanged", tmp_path), ("late", tmp_path)):
+        asked = Watched(
+            str(folder / f"{name}.csv"), PLANT, carried / "controller.json", carried, None, "float32", False
+        )
+        told[name] = open_watched(asked)[1].facts()["who"]
+    assert "psi_rad and phi_rad stand in each other's place" in told["exchanged"]
+    assert "one row late" in told["late"]
+    assert "nats" not in told["hop"]
+
+
 def test_a_signal_at_the_end_of_a_wait_ends_it(carried: Path) -> None:
     # Truth: `stop` from the handler of a signal ends `run`, also where the handler takes longer than what is left of a wait.
     log = Watched(str(carried / "hop.csv"), PLANT, carried / "controller.json", carried, None, "float32", False)
