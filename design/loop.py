@@ -50,9 +50,9 @@ def open_loop(plant: PlantPolynomials, controller: DeltaForm) -> OpenLoop:
 def plant_polynomials(plant: SampledPlant) -> PlantPolynomials:
     """b = C adj(gamma I - N) B and a = det(gamma I - N) by Faddeev and LeVerrier."""
     n = len(plant.N)
-    a, b = np.zeros(n + 1), np.zeros(n + 1)
+    a, b = np.zeros(n + 1, plant.N.dtype), np.zeros(n + 1, plant.N.dtype)
     a[n] = 1.0
-    adjugate = np.eye(n)
+    adjugate = np.eye(n, dtype=plant.N.dtype)
     for power in range(n - 1, -1, -1):
         b[power] = (plant.C @ adjugate @ plant.B)[0, 0]
         product = plant.N @ adjugate

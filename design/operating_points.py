@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.direct_form import DeltaForm, to_delta
-from design.discretise import sample
+from design.discretise import extended, sample
 from design.linearise import linearise, subsystem
 from design.loop import PlantPolynomials, plant_polynomials
 from design.obstacles import advice
@@ -121,11 +121,19 @@ def design_point(
     where = settings.place(wishes.axis, psi_rad)
     linear = subsystem(bound, linearise(bound, point), settings.loop(wishes.axis), settings.loops)
     transfer = transfer_function(linear, settings.sample_period_s, where)
-    return placed(transfer, plant_polynomials(sample(linear, settings.sample_period_s)), wishes, where)
+    plant, exact = (plant_polynomials(sample(of, settings.sample_period_s)) for of in (linear, extended(linear)))
+    return placed(transfer, plant, wishes, where, exact)
 
 
-def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSettings, where: str) -> PointDesign:
-    """Eq (26) solved for one sampled plant, given in powers of z^-1 and of gamma; raises BadInput naming `where` (see place)."""
+def placed(
+    transfer: TransferFunction,
+    plant: PlantPolynomials,
+    wishes: AxisSettings,
+    where: str,
+    exact: PlantPolynomials | None = None,
+) -> PointDesign:
+    """Eq (26) solved for one sampled plant, given in powers of z^-1 and of gamma, there perhaps in extended precision too; raises
+    BadInput naming `where` (see place)."""
     states, poles = len(plant.a) - 1, len(wishes.poles_rad_s)
     if poles != 2 * states:
         raise BadInput(
@@ -142,7 +150,7 @@ def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSett
         demand_usable(placement, where)
     except BadInput as refusal:
         raise replace(refusal, remedy=advice(plant, integrates=wishes.free_degree == "integral")) from None
-    return PointDesign(plant, transfer, placement, exact_delta(plant, placement, wishes))
+    return PointDesign(plant, transfer, placement, exact_delta(exact or plant, placement, wishes))
 
 
 def exact_delta(plant: PlantPolynomials, placement: Placement, wishes: AxisSettings) -> DeltaForm:
