@@ -29,23 +29,35 @@ def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, flo
     """Time from which the table's law, put into the state that the log tells, follows it, and within how many volt; else None.
 
     A law that agrees in its first sample began with the log; one that never is off by more than the bound did as well. Of a long log the
-    state is told anew now and then, as a law that integrates forgets no error of it.
+    state is told anew now and then, as a law that integrates forgets no error of it. Where the law rests, later rows may tell it better.
     """
     rows, setup = _telling_rows(shop.flight, table), Setup(table)
     at_rest_V = ReplayLaw(setup).outputs(shop.inputs(setup))
     off_V = np.abs(at_rest_V - shop.flight.logged_V).max(axis=1)
     if not rows.size or not off_V[0] > shop.flight.half_step_V[0].max():
         return None
+    for later in range(thresholds.FIRST_TRIED):
+        left = rows[rows >= rows[0] + later * thresholds.TRIED_LATER]
+        bound_V = _followed_within(shop, table, left, float(np.nanmax(off_V))) if left.size else None
+        if bound_V is not None:
+            return float(shop.flight.t_s[left[0]]), bound_V
+    return None
+
+
+def _followed_within(shop: Workshop, table: ControllerTable, rows: NDArray[np.int64], off_V: float) -> float | None:
+    """Within how many volt the law follows the log from the first of the `rows` that tell its state; None where by no bound that a law
+    from rest, which is off by `off_V`, clearly misses."""
+    setup = Setup(table)
     law, inputs, n = ReplayLaw(setup), shop.inputs(setup), len(shop.flight.t_s)
     spans = [(row, min(behind + thresholds.HISTORY + 1, n)) for row, behind in pairwise([*_anew(rows), n])]
     states = [_state(law, inputs, shop.flight, table, row) for row, _ in spans]
     wanted, slack = shop.answers(setup)
     for bound_V in thresholds.BOUNDS_V:
-        if np.nanmax(off_V) > thresholds.CLEARLY_OFF * bound_V and all(
+        if off_V > thresholds.CLEARLY_OFF * bound_V and all(
             law.run(law.copied(state), (row, behind), inputs, wanted, slack + bound_V) == behind
             for state, (row, behind) in zip(states, spans, strict=True)
         ):
-            return float(shop.flight.t_s[rows[0]]), bound_V
+            return bound_V
     return None
 
 

@@ -139,10 +139,14 @@ def _by_stretches(
     log: RunLog, table: ControllerTable, others: Sequence[ControllerTable], begins: Rows | None
 ) -> tuple[FirmwareReplay, bool]:
     """What is told of the stretches together, and whether the law is known to agree behind every break."""
-    parts = list(_parts(log, begins))
-    if len(parts) < 2 or not has_replayable_columns(log, table):
+    if not has_replayable_columns(log, table):
         return replay_firmware(log, table, others), True
-    first = replay_firmware(part(log, parts[0]), table, others)
+    parts = list(_parts(_as_given(log, table), begins))
+    if len(parts) < 2:
+        whole = replay_firmware(log, table, others)
+        if whole.cause != NOT_FOUND or not parts or parts[0].stop == len(log.t_s):
+            return whole, True
+    first = replay_firmware(part(log, slice(0, parts[0].stop)), table, others)
     if not first.bit_exact and first.cause not in CLEARED:
         return first, True
     behind = [_behind(part(log, rows), table) for rows in parts[1:]]
@@ -151,12 +155,14 @@ def _by_stretches(
     sentence += "".join(f", {_in_words(entry, unit)}" for entry in behind)
     if first.sentence is not None:
         sentence = f"{first.sentence}; {sentence}"
-    followed = all(entry.since_s is not None for entry in behind)
+    followed = bool(behind) and all(entry.since_s is not None for entry in behind)
     return replace(first, bit_exact=False, cause=MISSING_ROWS, sentence=sentence), followed
 
 
 def _break(log: RunLog, parts: Sequence[slice], begins: Rows | None) -> str:
     """What ends the first stretch."""
+    if len(parts) < 2:
+        return "readings are missing"
     row = parts[1].start
     cut = begins is not None and bool(begins[row]) and row == parts[0].stop and not gaps(log.t_s)[row]
     return "another recording begins" if cut else "rows or readings are missing"
@@ -167,6 +173,14 @@ def _in_words(entry: _Behind, unit: str) -> str:
         return f"from {entry.start_s:.6g} s to {entry.end_s:.6g} s the law's state is not known"
     within = "to the bit" if entry.within_V == 0.0 else f"within {entry.within_V:g} {unit}"
     return f"from {entry.since_s:.6g} s to {entry.end_s:.6g} s it agrees {within}"
+
+
+def _as_given(log: RunLog, table: ControllerTable) -> RunLog:
+    """The log with no reading in the rows from which on a reference of the law is missing to the end."""
+    given = np.all(np.isfinite([log.extra[loop.reference] for loop in table.loops]), axis=0)
+    known = np.flatnonzero(given)
+    behind = np.arange(len(log.t_s)) > (known[-1] if known.size else len(log.t_s))
+    return replace(log, y=np.where(behind[:, None], np.nan, log.y)) if behind.any() else log
 
 
 def _parts(log: RunLog, begins: Rows | None) -> Iterator[slice]:

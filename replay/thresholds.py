@@ -43,6 +43,8 @@ TOLD_ANEW = Count(
     "rows",
     "after which the state is told anew: what rounding of the inputs leaves of it grows to 0.1 mV within 5000 rows of the CE150",
 )
+FIRST_TRIED = Count(5, "rows", "are tried one after the other as the first that tells the state", "flights cut at rest")
+TRIED_LATER = Count(120, "rows", "between two of them", "the same")
 CLEARLY_OFF = Limit(100.0, "times the bound", "a law from rest is off by this much in a log that begins in flight")
 
 # overflow

@@ -174,3 +174,39 @@ def test_a_firmware_that_went_wrong_in_a_hold_is_not_cleared_by_it() -> None:
     found = replay_stretches(replace(log, u=u), TABLE)
     assert found.cause == "not_found"
     assert differs(found.record())
+
+
+@pytest.mark.parametrize("lost", ["angles", "reference", "an angle, and the other stands"])
+def test_readings_that_are_missing_to_the_end_are_the_logs_doing(lost: str) -> None:
+    """Truth: the table's own law flew to the end; from 12 s on the log lacks what it took."""
+    log = own()
+    gone = log.t_s >= 12.0
+    if lost == "reference":
+        reference = log.extra["psi_ref_rad"]
+        log = replace(log, extra={**log.extra, "psi_ref_rad": np.where(gone, np.nan, reference)})
+    else:
+        which = [True, lost == "angles"]
+        log = replace(log, y=np.where(gone[:, None] & which, np.nan, log.y))
+    if lost == "an angle, and the other stands":
+        stands = log.y.copy()
+        stands[log.t_s >= 15.0, 1] = log.y[log.t_s >= 15.0, 1][0]  # frozen besides
+        log = replace(log, y=stands)
+    found = replay_stretches(log, TABLE)
+    assert (found.bit_exact, found.cause) == (False, "missing_rows")
+    assert found.sentence == "readings are missing behind 11.99 s; up to there the firmware is cleared"
+
+
+def test_a_firmware_at_fault_before_readings_are_missing_to_the_end_is_found() -> None:
+    log = own()
+    u, y = log.u.copy(), log.y.copy()
+    u[500] = u[499]
+    y[1500:] = np.nan
+    assert differs(replay_stretches(replace(log, u=u, y=y), TABLE).record())
+
+
+def test_a_log_cut_where_the_law_rested_begins_in_flight() -> None:
+    """Truth: the table's own law, which held both references for seconds before and behind the cut, so that from rest it is little off."""
+    log = default_flight(5.0)
+    assert np.ptp(log.y[:100], axis=0).max() < 0.01
+    found = replay_stretches(log, TABLE)
+    assert (found.bit_exact, found.cause) == (False, "begins_in_flight")

@@ -9,7 +9,7 @@ import pytest
 from records.errors import BadInput
 from records.log import RunLog, save_log
 from tests.law_tables import ce150_table
-from tests.replay.firmware_flights import own, plant
+from tests.replay.firmware_flights import default_flight, own, plant
 from tests.soak import sampled
 from twinlaw.workflows.chain.verifying import recorded_replay
 
@@ -95,3 +95,11 @@ def begun_with(column: str, rows: int, value: float) -> RunLog:
     log = replace(log, u=log.u.copy(), y=log.y.copy(), extra={name: v.copy() for name, v in log.extra.items()})
     log.column(column)[:rows] = value
     return log
+
+
+def test_a_log_that_begins_in_flight_fails_no_verification(tmp_path: Path) -> None:
+    """Truth: the table's own law flew, and the log was cut behind its first 20 s: nobody knows the law's state there to the bit."""
+    save_log(tmp_path / "cut.csv", default_flight(20.0))
+    replay, said = recorded_replay(tmp_path / "cut.csv", ce150_table(), plant())
+    assert replay.sent is None
+    assert "the log does not begin with the law at rest" in said[0]

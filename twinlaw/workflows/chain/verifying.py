@@ -17,9 +17,11 @@ from records.log import RunLog
 from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
-from replay.firmware import CLEARED, demand_causal
+from replay.firmware import CLEARED, FirmwareReplay, demand_causal
 from replay.flight import has_replayable_columns
+from replay.search import IN_FLIGHT
 from replay.stretches import replay_stretches
+from replay.thresholds import MOST_UNREAD
 from rig.emulator.board import EmulatedBoard
 from rig.flight.core_law import CoreLaw
 from rig.flight.target_law import TargetLaw
@@ -180,12 +182,19 @@ def recorded_replay(
     return replay, tuple(filter(None, (half, said)))
 
 
+def _lacks_its_beginning(replayed: FirmwareReplay) -> bool:
+    """Whether the law flew before the log began. Wrong first commands differ in no row but theirs, as no law takes its own."""
+    rows = max((entry.samples_different for entry in replayed.residuals), default=0)
+    return replayed.cause == IN_FLIGHT and rows > MOST_UNREAD
+
+
 def _compared(
     log: RunLog, replay: Replay, table: ControllerTable, bound: BoundPlant, path: Path
 ) -> tuple[Replay, str | None]:
     """The replay of a log as far as its inputs can be compared, and why not farther, or why they differ; raises BadInput.
 
-    What the log lacks, or holds in too few digits, is not the law's failure: it is a stimulus, and its inputs are not compared.
+    What the log lacks, its beginning too, or holds in too few digits, is not the law's failure: it is a stimulus, and its inputs are not
+    compared.
     """
     if replay.sent is None or not has_replayable_columns(log, table):
         return replay, None
@@ -204,6 +213,6 @@ def _compared(
         said = "with the readings that the law had in place of those that were left out, every bit agrees"
         return replace(replay, sent=None), f"{path.name}: {said}; its inputs are not compared bit by bit"
     demand_causal(path, replayed)
-    if replayed.cause not in CLEARED:
+    if replayed.cause not in CLEARED and not _lacks_its_beginning(replayed):
         return replay, None if replayed.cause is None else f"{path.name}: {replayed.sentence}"
     return replace(replay, sent=None), f"{path.name}: {replayed.sentence}; its inputs are not compared bit by bit"
