@@ -41,7 +41,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
     signals = {
         name: replace(
             signal,
-            unit=_beside(name, UNITS, texts),
+            unit=_beside(name, UNITS, texts) or _of_info(name, texts),
             heading=_label(name, texts, found.signals) or _of_series(name, found.signals),
         )
         for name, signal in found.signals.items()
@@ -56,6 +56,11 @@ def _label(name: str, texts: Mapping[str, str], signals: Mapping[str, object]) -
     scope, _, field = name.rpartition(".")
     label = "" if field != "values" and f"{scope}.values" in signals else _beside(name, _LABELS, texts)
     return _PATH.sub("", label)
+
+
+def _of_info(name: str, texts: Mapping[str, str]) -> str:
+    """The unit in what a timeseries says of its data and times, where it was saved as a structure: `Data` beside `DataInfo`."""
+    return next((texts[place] for word in UNITS if (place := f"{name}Info.{word}") in texts), "")
 
 
 def _of_series(name: str, signals: Mapping[str, object]) -> str:

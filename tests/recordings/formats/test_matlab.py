@@ -244,3 +244,21 @@ def test_names_beside_a_matrix_are_told_and_taken_only_where_one_array_of_them_f
         savemat(tmp_path / "two.mat", named | other)
         with pytest.raises(BadInput, match="columns t_s, u_M_V"):
             imported_here(tmp_path / "two.mat", ColumnMapping())
+
+
+def test_a_timeseries_as_a_structure_keeps_the_units_of_its_data_and_times(tmp_path: Path) -> None:
+    """Truth: what MATLAB's get(ts) holds: degrees beside the data, milliseconds beside the times."""
+    angles = ("psi_rad", "phi_rad")
+    saved = {
+        name: {
+            "Time": 1e3 * T_S,
+            "TimeInfo": {"Units": "milliseconds", "Start": 0.0},
+            "Data": np.degrees(RUN[name]) if name in angles else RUN[name],
+            "DataInfo": {"Units": "deg" if name in angles else "V", "UserData": np.zeros((0, 0))},
+        }
+        for name in FOUR
+    }
+    savemat(tmp_path / "run.mat", saved)
+    log = imported_here(tmp_path / "run.mat", ColumnMapping()).log
+    for name, values in RUN.items():
+        np.testing.assert_allclose(log.column(name), values, rtol=1e-12, atol=1e-12)
