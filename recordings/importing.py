@@ -9,7 +9,15 @@ import numpy as np
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.formats import table
-from recordings.joined import from_the_inputs, in_order, in_own_rows, on_one_clock, to_the_last_time, with_own_times
+from recordings.joined import (
+    from_the_inputs,
+    in_order,
+    in_own_rows,
+    on_one_clock,
+    to_the_last_time,
+    with_own_times,
+    without_unwritten_rows,
+)
 from recordings.mapping.automatic import ambiguous, automatic
 from recordings.mapping.columns import Column, column
 from recordings.mapping.mapping import ColumnMapping
@@ -63,6 +71,7 @@ def log_of_contents(
     found, left_out = _columns(of, mapping, columns)
     channels, held = in_own_rows({name: entry.channel for name, entry in found.items()}, columns)
     channels, untimed = to_the_last_time(channels)
+    channels, empty = without_unwritten_rows(channels, columns)
     channels, counted = on_one_clock(channels)
     channels, shift = _from_the_first(channels)
     channels, spread = with_own_times(channels, columns, where)
@@ -79,7 +88,7 @@ def log_of_contents(
     )
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
-    told += [*held, *untimed, *counted, *spread, *late, *before]
+    told += [*held, *untimed, *empty, *counted, *spread, *late, *before]
     return Imported(log, used, (*told, *_missing(log), *_doubtful(log, of)))
 
 

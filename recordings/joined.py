@@ -10,6 +10,7 @@ from recordings.signals import counted
 from records.log import LogColumns
 from records.logs.coarse_stamps import own_times
 from records.logs.restarts import pause_s, restart_rows
+from records.logs.unwritten import unwritten_rows
 
 SPARSE = 0.3  # of a column without a number: of two rates the nearest that loggers write into one table are 3 to 2, a third without
 EVENLY = 10  # times the usual rows to the next number: beyond it a signal was not logged for a while, and nobody knows what it was
@@ -50,6 +51,29 @@ def _known(channel: Channel) -> Channel:
 
 def _size(channel: Channel) -> int:
     return int(channel.values.size)
+
+
+def without_unwritten_rows(
+    channels: Mapping[str, Channel], columns: LogColumns
+) -> tuple[dict[str, Channel], list[str]]:
+    """The channels of one clock without the rows in which none of them was written, and what is to be said of these."""
+    clocked = {name: channel for name, channel in channels.items() if channel.t_s is not None}
+    clock = next((clocked[name].t_s for name in columns.outputs if name in clocked), None)
+    if clock is None or not all(np.array_equal(channel.t_s, clock, equal_nan=True) for channel in clocked.values()):
+        return dict(channels), []
+    u, y = (
+        np.column_stack([clocked[name].values for name in names if name in clocked] or [np.zeros((clock.size, 0))])
+        for names in (columns.inputs, columns.outputs)
+    )
+    beside = [channel.values for name, channel in clocked.items() if name not in (*columns.inputs, *columns.outputs)]
+    lost = unwritten_rows(u, y, beside)
+    lost[[row for channel in clocked.values() for row in channel.faults]] = False
+    if not lost.any():
+        return dict(channels), []
+    kept = {name: taken(channel, ~lost) for name, channel in clocked.items()}
+    first_s = float(clock[lost][0])
+    said = f"{counted(int(lost.sum()), 'rows')} in which nothing was written left out, first at {first_s:.9g} s"
+    return {**channels, **kept}, [said]
 
 
 def to_the_last_time(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], list[str]]:

@@ -167,6 +167,27 @@ def test_a_signal_of_the_name_in_another_quantity_is_proposed_with_a_factor_to_b
         log_of_contents(Contents(signals), "rig.csv", ColumnMapping(), columns_of("ce150"))
 
 
+def test_rows_with_nothing_but_their_time_are_left_out_and_a_row_that_lacks_an_input_alone_is_refused(
+    tmp_path: Path,
+) -> None:
+    """Truth: of 50 rows a logger wrote three with their times alone, two of them one behind the other."""
+    lost = np.isin(np.arange(50), (20, 30, 31))
+    rows = [
+        f"{t},,,," if gone else f"{t},{u},{v},{psi},{phi}"
+        for gone, t, u, v, psi, phi in zip(lost, *RUN.values(), strict=True)
+    ]
+    path = tmp_path / "run.csv"
+    path.write_text("\n".join([",".join(RUN), *rows]), encoding="utf-8")
+    done = import_file(path, ColumnMapping())
+    np.testing.assert_array_equal(done.log.t_s, T_S[~lost])
+    np.testing.assert_array_equal(done.log.column("u_M_V"), RUN["u_M_V"][~lost])
+    assert "3 rows in which nothing was written left out, first at 0.2 s" in done.found
+    rows[20] = "0.2,,1.8,0.1,0.1"
+    path.write_text("\n".join([",".join(RUN), *rows]), encoding="utf-8")
+    with pytest.raises(BadInput, match=r"column 'u_M_V': got no number at 0\.2 s, in 1 of 48 rows"):
+        import_file(path, ColumnMapping())
+
+
 def test_a_setpoint_is_not_proposed_as_the_measured_angle() -> None:
     """Truth: two signals bear the axis' word each, the reference first."""
     names = ("Main motor", "Tail motor", "Elevation setpoint", "Elevation", "Azimuth target", "Azimuth")
