@@ -58,8 +58,9 @@ def without_unwritten_rows(
 ) -> tuple[dict[str, Channel], list[str]]:
     """The channels of one clock without the rows in which none of them was written, and what is to be said of these."""
     clocked = {name: channel for name, channel in channels.items() if channel.t_s is not None}
-    clock = next((clocked[name].t_s for name in columns.outputs if name in clocked), None)
-    if clock is None or not all(np.array_equal(channel.t_s, clock, equal_nan=True) for channel in clocked.values()):
+    clocks = [channel.t_s for channel in clocked.values() if channel.t_s is not None]
+    clock = clocks[0] if clocks else np.zeros(0)
+    if not all(np.array_equal(other, clock, equal_nan=True) for other in clocks) or not clocks:
         return dict(channels), []
     u, y = (
         np.column_stack([clocked[name].values for name in names if name in clocked] or [np.zeros((clock.size, 0))])
