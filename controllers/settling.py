@@ -73,15 +73,18 @@ def last_error(
 def _legs(
     bound: BoundPlant, table: FlownTable, outputs: tuple[int, ...], point: OperatingPoint
 ) -> tuple[list[tuple[Leg, ...]], float]:
-    """Each loop's reference from where it rests by one step towards its middle, and how long the flight takes [s]."""
+    """Each loop's reference, from where it rests by one step towards its middle, and how long the flight takes [s].
+
+    A schedule may reach farther than references do: the law holds them within their range, and so does this.
+    """
     legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point)]
     at_s = STEP_AT_S
     for place, axis in zip(outputs, table.axes, strict=True):
-        (held,) = legs[place]
-        middle_rad = 0.5 * (axis.reference_min_rad + axis.reference_max_rad)
-        step_rad = STEP * (axis.reference_max_rad - axis.reference_min_rad)
-        towards = -1.0 if math.radians(held.angle_deg) > middle_rad else 1.0
-        legs[place] = held, Leg(at_s, held.angle_deg + towards * math.degrees(step_rad))
+        (rests,) = legs[place]
+        least_deg, most_deg = math.degrees(axis.reference_min_rad), math.degrees(axis.reference_max_rad)
+        held_deg = min(max(rests.angle_deg, least_deg), most_deg)
+        towards = -1.0 if held_deg > 0.5 * (least_deg + most_deg) else 1.0
+        legs[place] = Leg(0.0, held_deg), Leg(at_s, held_deg + towards * STEP * (most_deg - least_deg))
         at_s += LATER_S
     longest_s = max(hold_s(table, axis, loop.axis) for axis, loop in zip(table.axes, table.loops, strict=True))
     each = zip(legs, bound.encoder_steps, strict=True)

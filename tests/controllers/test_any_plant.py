@@ -194,6 +194,17 @@ def test_a_schedule_that_changes_nothing_is_no_obstacle(feedforward_degree: int,
     assert host.self_test() == 0
 
 
+@pytest.mark.parametrize("name", ["pid", "lqg"])
+def test_references_that_end_before_the_schedule_does_are_no_obstacle(name: str, tmp_path: Path) -> None:
+    """Truth: the law holds its references within +-0.2 rad; from rest at the schedule's end, 0.5 rad, it flies there and stays."""
+    path = PLAIN.write(tmp_path, "plain")
+    narrow = "reference_min_rad = -0.2\nreference_max_rad = 0.2\nprefilter_time_constant_s = 0.3\n"
+    path.write_text(path.read_text() + SAME_EVERYWHERE.format(feedforward_degree=2) + narrow)
+    arm = bind(load_plant(path))
+    table = CONTROLLERS[name].design(arm, read_settings(arm))
+    demand_settling(arm, table, CONTROLLERS[name].float_law(table), "any plant")
+
+
 ROOM = OwnPlant(
     {"C": (80.0, 8.0, "J K^-1"), "W": (500.0, 50.0, "J K^-1"), "G": (4.0, 0.4, "W K^-1"), "H": (9.0, 0.9, "W K^-1")},
     {"air_K": 0.01},
