@@ -32,7 +32,7 @@ from records.log import LOOPS, LogColumns, RunLog, facts_of_sidecar
 from records.logs.clock import finer_unit
 from records.plant import load_plant
 from records.text.units import unit_of
-from sim.columns import log_columns
+from sim.columns import log_columns, reference_name
 from sim.equations import nominal_model
 from sim.plants import MODELS
 
@@ -130,14 +130,15 @@ def _columns(of: Source, mapping: ColumnMapping, columns: LogColumns) -> tuple[d
         raise _incomplete([name for name in needed if name not in texts], of, columns, {**_time(mapping), **texts})
     found = {name: column(name, text, of) for name in needed for text in [texts[name]]}
     left_out: list[str] = []
+    followed = {reference_name(output): found[output] for output in columns.outputs}
     for name in columns.optional:
         if name in mapping.columns:
-            found[name] = column(name, mapping.columns[name], of)
+            found[name] = column(name, mapping.columns[name], of, followed.get(name))
             continue
         try:
             text = automatic(name, of)
             if text is not None:
-                found[name] = column(name, text, of)
+                found[name] = column(name, text, of, followed.get(name))
         except Ambiguous as error:
             left_out.append(f"{name} is left out: it could be {' or '.join(error.candidates[:4])}")
         except BadInput as error:

@@ -19,45 +19,58 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """A column as recorded, the expression that gave it, and what is to be said of how it was converted."""
+    """A column as recorded, the expression that gave it, and what is to be said of how it was converted; `leaps_rad` is the range of an
+    angle in which it was counted on, 0 where it was not."""
 
     channel: Channel
     text: str
     told: str
     time_told: str = ""
+    leaps_rad: float = 0.0
 
 
-def column(name: str, text: str, of: Source) -> Column:
-    """The column `name` from the expression `text`; raises BadInput that says what to type instead."""
+def column(name: str, text: str, of: Source, followed: Column | None = None) -> Column:
+    """The column `name` from the expression `text`, in the turn of the one that it is `followed` by; raises BadInput that says what to
+    type instead."""
     found = Looked(of, unit_of(name) or "1", name)
     node = parsed(name, text, of)
     quantity = evaluated(name, text, node, found.look_up, of)
     factor, told = factor_of(name, text, quantity, of)
-    values, over = quantity.values * factor, ""
+    values, over, size = quantity.values * factor, "", 0.0
     if (unit_of(name) or "1") == "rad" and quantity.values.ndim:
-        values, over = _without_leaps(values, factor, quantity.unit)
+        values, over, size = _without_leaps(values, factor, quantity.unit)
+        if followed is not None and quantity.unit is not None:
+            values = _in_its_turn(values, followed)
     told += over or _ran_over(found, text)
     if not quantity.values.ndim:
         return Column(Channel(None, values), text, f"{name} = {text}, a constant")
     _check_numbers(name, text, values, found, of)
     clock, length = _clock(name, text, found, of)
     t_s, time_told = times(clock, length, name, of)
-    return Column(Channel(t_s, values, _faults(found, clock)), text, f"{name} = {text}{told}", time_told)
+    return Column(Channel(t_s, values, _faults(found, clock)), text, f"{name} = {text}{told}", time_told, size)
 
 
-def _without_leaps(values: Array, factor: float, unit: str | None) -> tuple[Array, str]:
-    """An angle [rad] without leaps of a whole turn or, in counts of `factor`, of their integer; and what is to be said of it.
+def _without_leaps(values: Array, factor: float, unit: str | None) -> tuple[Array, str, float]:
+    """An angle [rad] without leaps of a whole turn or, in counts of `factor`, of their integer; what is to be said of it, and the range.
 
     What was typed stands as typed, and is only said.
     """
     sizes = [2.0 * np.pi, *(factor * size for size in INTEGERS if unit and factor != 1.0)]
     counted, leaps, size = angle_past_its_end(values, sizes)
     if not leaps:
-        return values, ""
+        return values, "", 0.0
     what = "a whole turn" if size == sizes[0] else f"{size / factor:.0f} counts"
     if unit is None:
-        return values, f", which leaps by {what} {leaps} times: unwrap(...) around it would undo that"
-    return counted, f", without {leaps} leaps of {what}"
+        return values, f", which leaps by {what} {leaps} times: unwrap(...) around it would undo that", 0.0
+    return counted, f", without {leaps} leaps of {what}", size
+
+
+def _in_its_turn(values: Array, followed: Column) -> Array:
+    """A reference [rad] beside the output that follows it, where that was counted on: as many whole ranges off as brings them together."""
+    if not followed.leaps_rad or not np.isfinite(values).any():
+        return values
+    apart = np.nanmedian(values) - np.nanmedian(followed.channel.values)
+    return np.asarray(values - followed.leaps_rad * np.round(apart / followed.leaps_rad))
 
 
 def _ran_over(found: Looked, text: str) -> str:

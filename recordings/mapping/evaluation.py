@@ -49,12 +49,23 @@ class Function:
     keeps_unit: bool = False
 
 
+def _unwrapped(values: Array, period: float | Array = 2.0 * np.pi) -> Array:
+    """The values (n,) without leaps of the period, the first within half of it about 0, as a signed counter begins; what is no number
+    stays so."""
+    counted = np.array(values)
+    known = np.isfinite(counted)
+    if counted.ndim and known.any():
+        whole = np.unwrap(counted[known], period=float(period))
+        counted[known] = whole - period * np.round(whole[0] / period)
+    return counted
+
+
 _ONE, _TWO = range(1, 2), range(2, 3)
 FUNCTIONS: Mapping[str, Function] = {
     "abs": Function(_ONE, np.abs, True),
     "min": Function(_TWO, np.minimum, True),
     "max": Function(_TWO, np.maximum, True),
-    "unwrap": Function(range(1, 3), lambda x, period=2.0 * np.pi: np.unwrap(x, period=period), True),
+    "unwrap": Function(range(1, 3), _unwrapped, True),
     "sign": Function(_ONE, np.sign),
     "sqrt": Function(_ONE, np.sqrt),
     "exp": Function(_ONE, np.exp),

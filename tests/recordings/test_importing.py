@@ -159,6 +159,33 @@ def test_counts_in_an_integer_that_a_formula_takes_as_they_are_are_said_to_leap(
     assert not any("65536:" in told for told in done.found)
 
 
+@pytest.mark.parametrize("first_rad", [0.0, -0.3, 0.3])
+def test_counts_that_are_counted_on_begin_where_a_signed_counter_does_and_an_empty_cell_hides_none_behind_it(
+    first_rad: float, tmp_path: Path
+) -> None:
+    """Truth: the angle swings by 1 rad about `first_rad` in counts of 1 mrad of 16 bits without a sign; one cell is empty."""
+    counts = np.round(1e3 * (first_rad + np.sin(9.0 * T_S))).astype(np.int64)
+    cells = [str(count % 65536) for count in counts]
+    cells[3] = ""
+    rows = zip(RUN["t_s"], RUN["u_M_V"], RUN["u_T_V"], cells, RUN["phi_rad"], strict=True)
+    path = tmp_path / "run.csv"
+    path.write_text("\n".join(["t_s,u_M_V,u_T_V,counts,phi_rad", *(",".join(map(str, row)) for row in rows)]))
+    log = import_file(path, ColumnMapping(columns={"psi_rad": "unwrap(counts, 65536)*0.001"})).log
+    np.testing.assert_allclose(log.column("psi_rad"), np.where(np.arange(50) == 3, np.nan, 1e-3 * counts), atol=1e-12)
+
+
+def test_a_reference_lies_in_the_turn_of_its_output(tmp_path: Path) -> None:
+    """Truth: an axis swings about 0 beside references of -10 and -5 deg, both written within 0 to 360 deg."""
+    reference = np.where(np.arange(50) < 25, -10.0, -5.0)
+    measured = 12.0 * np.sin(20.0 * T_S)
+    written = {name: RUN[name] for name in ("t_s", "u_M_V", "u_T_V", "psi_rad")}
+    saved = {**written, "phi_deg": measured % 360.0, "phi_ref_deg": reference % 360.0}
+    savemat(tmp_path / "run.mat", saved)
+    log = imported_here(tmp_path / "run.mat", ColumnMapping()).log
+    np.testing.assert_allclose(log.column("phi_rad"), np.radians(measured), atol=1e-12)
+    np.testing.assert_allclose(log.column("phi_ref_rad"), np.radians(reference), atol=1e-12)
+
+
 def test_a_signal_of_the_name_in_another_quantity_is_proposed_with_a_factor_to_be_typed() -> None:
     t_s = 0.01 * np.arange(50)
     names = ("u_M_pct", "u_T_V", "psi_deg", "phi_deg")
