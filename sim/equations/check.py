@@ -121,9 +121,8 @@ def _names(model: Model, equations: Equations) -> Iterator[Slip]:
     for kind, names in groups.items():
         for name in names:
             if name in seen:
-                yield Slip(
-                    (name,), f"{kind} {name!r}", f"the name of a {seen[name]} too", "a name of its own", "rename one"
-                )
+                got = f"the name of {'an' if seen[name] == 'input' else 'a'} {seen[name]} too"
+                yield Slip((name,), f"{kind} {name!r}", got, "a name of its own", "rename one")
             seen[name] = kind
     signs = [str(sign) for sign in model.friction_signs]
     for kind, names in groups.items():
@@ -258,7 +257,8 @@ def _functions(model: Model, equations: Equations) -> Iterator[Slip]:
     for what, words, expression in _expressions(model):
         whole = sympy.sympify(expression)
         unknown = _without_text(whole)
-        if whole.has(sympy.nan, sympy.zoo, sympy.I):
+        endless = () if "input_limits" in words or "stop" in what else (sympy.oo, -sympy.oo)
+        if whole.has(sympy.nan, sympy.zoo, sympy.I, *endless):
             yield Slip(words, what, shown(expression), "a real number everywhere", "look for a division by 0")
         elif unknown is not None:
             got = f"{shown(expression)}, with {shown(unknown)}"
