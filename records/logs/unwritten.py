@@ -33,14 +33,14 @@ def unwritten_rows(u: Array, y: Array, beside: Sequence[Array]) -> Rows:
     empty: Rows = np.asarray(np.isnan(table).all(axis=1))
     zero: Rows = np.asarray(((table == 0.0) | np.isnan(table)).all(axis=1)) & ~empty & np.isfinite(u).all(axis=1)
     written = np.flatnonzero(~empty & ~zero)
-    if not zero.any() or written.size < 2 or zero.mean() > MOST:
+    if not zero.any() or written.size < 2:
         return none if empty.all() else empty
     place = np.searchsorted(written, np.arange(len(y)))
     before, after = (written[np.clip(place - back, 0, written.size - 1)] for back in (1, 0))
     inside = (place > 0) & (place < written.size)
     driven = zero & inside & ((u[before] != 0.0) & (u[after] != 0.0)).any(axis=1)
     leaps = [driven & _leaps(column, written, before, after) for column in y.T]
-    return empty | driven if np.any(leaps) else empty
+    return empty | driven if np.any(leaps) and driven.mean() <= MOST else empty
 
 
 def _leaps(values: Array, written: NDArray[np.intp], before: NDArray[np.intp], after: NDArray[np.intp]) -> Rows:

@@ -217,12 +217,14 @@ def flight(rows=400):
     return RunLog(COLUMNS, 0.01, "closed", t_s, u, 0.001 * np.round(y / 0.001), {"psi_ref_rad": np.full(rows, -0.3)})
 
 
-@pytest.mark.parametrize("stands", [0.0, np.nan])
-def test_rows_in_which_nothing_was_written_are_left_out_and_said(tmp_path, stands):
-    """Truth: a logger lost 5 % of its records, once five in a row, and left zeros or empty cells beside their times."""
+@pytest.mark.parametrize(("stands", "rests"), [(0.0, 0), (np.nan, 0), (0.0, 100)])
+def test_rows_in_which_nothing_was_written_are_left_out_and_said(tmp_path, stands, rests):
+    """Truth: a logger lost 5 % of its records, once five in a row, and left zeros or empty cells beside their times; the plant may have
+    rested at zero before."""
     log = flight()
+    log.u[:rests], log.y[:rests], log.extra["psi_ref_rad"][:rests] = 0.0, 0.0, 0.0
     lost = np.zeros(400, bool)
-    lost[10:390:20] = lost[200:205] = True
+    lost[rests + 10 : 390 : 20] = lost[200:205] = True
     y, u, reference = log.y.copy(), log.u.copy(), log.extra["psi_ref_rad"].copy()
     y[lost], u[lost], reference[lost] = stands, stands, stands
     text = csv_text(RunLog(COLUMNS, 0.01, "closed", log.t_s, u, y, {"psi_ref_rad": reference}))
@@ -230,7 +232,7 @@ def test_rows_in_which_nothing_was_written_are_left_out_and_said(tmp_path, stand
     (tmp_path / "a.toml").write_text(SIDECAR)
     read = load_log(tmp_path / "a.csv", COLUMNS)
     assert read.unwritten is not None
-    assert (read.unwritten.rows, read.unwritten.first_s) == (lost.sum(), log.t_s[10])
+    assert (read.unwritten.rows, read.unwritten.first_s) == (lost.sum(), log.t_s[rests + 10])
     np.testing.assert_array_equal(read.t_s, log.t_s[~lost])
     np.testing.assert_array_equal(read.u, log.u[~lost])
     np.testing.assert_array_equal(read.y, log.y[~lost])
