@@ -90,8 +90,7 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
     if abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
         yield say(
             "sample_period",
-            f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s ({found.period_error_ppm:+.0f} ppm); "
-            "their own times are used",
+            f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s{_how_far(found, log)}; their own times are used",
         )
     if found.jitter_rms_s > thresholds.JITTER_PERIODS * found.period_s:
         yield say(
@@ -99,6 +98,14 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
             f"time stamps jitter by {found.jitter_rms_s:.3g} s rms, {found.jitter_max_s:.3g} s at most; true times are used",
         )
     yield from _missing(log, name, found)
+
+
+def _how_far(found: Timing, log: RunLog) -> str:
+    """How far the rows' period is off the stated one: by so much, or by so many rows of which one was written."""
+    times = found.period_s / log.sample_period_s
+    if round(times) >= 2 and abs(times / round(times) - 1.0) < thresholds.OF_SO_MANY:
+        return f": 1 in {round(times)} was written, and what was commanded in the others is not known"
+    return f" ({found.period_error_ppm:+.0f} ppm)"
 
 
 def _by_jitter_ppm(found: Timing) -> float:

@@ -284,3 +284,14 @@ def test_where_standard_error_is_full_the_exit_status_still_tells_bad_input() ->
         command = [sys.executable, "-m", "twinlaw.command", "import", "no such file.csv"]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=full, cwd=ROOT, check=False)
     assert (done.returncode, done.stdout) == (2, b"")
+
+
+@pytest.mark.parametrize("words", [["identify"], ["diagnose"], ["watch", "--port"], ["verify", "--log"], ["splits"]])
+def test_a_log_that_is_not_there_is_named_as_it_was_typed(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = ["--table", str(tmp_path / "controller.json")] if words[0] == "verify" else []
+    (tmp_path / "controller.json").write_text(table_text(stated_table("ce150")), encoding="utf-8")
+    assert main([*words, str(tmp_path / "nope.csv"), *table, "--out", str(tmp_path / "out")]) == 2
+    assert f"{tmp_path / 'nope.csv'}: " in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

@@ -301,7 +301,7 @@ def bounded(tmp_path, text):
         (lambda tmp_path: ["--window", "-1"], "--window"),
         (lambda tmp_path: ["--plant", "plants/emps.toml"], "plant: got 'ce150', expected 'emps'"),
         (lambda tmp_path: [str(tmp_path)], "none in this folder"),
-        (lambda tmp_path: [str(tmp_path / "nothing.csv")], "nothing.toml"),
+        (lambda tmp_path: [str(tmp_path / "nothing.csv")], "nothing.csv: experiment or run log: got No such file"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_used_is_one_line_and_leaves_nothing(folder, tmp_path, capsys, options, words):

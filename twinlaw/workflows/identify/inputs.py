@@ -44,6 +44,9 @@ def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlan
     experiments, logs = [], []
     for path in _files(paths):
         sidecar = path.with_suffix(".toml")
+        if not path.exists() and not sidecar.exists():
+            what, expected = "experiment or run log", "a readable file, or a folder"
+            raise BadInput(what, str(path), "No such file or directory", expected, "check the path")
         schema = read_toml(sidecar, "experiment or sidecar of a run log").get("schema")
         if schema == PLANT_SCHEMA:
             remedy = "leave it out, or give its folder, of which the experiments alone are read"
