@@ -1,13 +1,14 @@
 """The answer put into its record: the verdict with places, times, effects, what the hold-out says, and the next experiment."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.unknown import Suspect, suspects
-from diagnosis.decide.weighing import Weighed, alike
+from diagnosis.decide.weighing import Weighed, alike, learned
 from diagnosis.detect.detection import FormScores
 from diagnosis.detect.visibility import cannot_tell
 from diagnosis.experiment.next_experiment import next_experiment
@@ -22,6 +23,7 @@ from diagnosis.explain.sentences import sentences
 from diagnosis.explain.sparse import suggestion
 from diagnosis.explain.whole_rows import whole_rows
 from diagnosis.fit.evidence import FittedHypothesis
+from diagnosis.fit.gauss_newton import tempered
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.result import Exit, Judged, Material, Result, Seen
@@ -37,8 +39,9 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     energy = removed_energy(before, after)
     predicted = () if judged.holdout is None else judged.holdout.predicted(judged.chosen)
     holdout = judged.holdout
+    known = _tempered(case, judged.chosen, weighed.scale)
     kept = holdout.notes if holdout is not None and judged.chosen is holdout.base else ()
-    slipped = whole_rows(case, judged.chosen, material.firmware)
+    slipped = whole_rows(case, known, material.firmware)
     notes = (*judged.notes, *kept, *slipped, *notes_of(case, seen.score_tests, judged.chosen, weighed))
     diagnosis = Diagnosis(
         verdict="gap",
@@ -66,9 +69,9 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         note_records=notes,
         comparison=weighed.comparison,
     )
-    shape = shape_of(judged.curve) if judged.curve is not None and weighed.nameless else None
+    shape = shape_of(judged.curve, weighed.scale) if judged.curve is not None and weighed.nameless else None
     checked = None if holdout is None else holdout.case
-    return Result(diagnosis, improved_plant(case, judged.chosen), case, predicted, shape, checked)
+    return Result(diagnosis, improved_plant(case, known), case, predicted, shape, checked)
 
 
 def _reason(judged: Judged) -> Exit:
@@ -101,7 +104,8 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit
         note_records=notes,
     )
     checked = None if holdout is None else holdout.case
-    return Result(diagnosis, improved_plant(case, chosen), case, predicted, None, checked)
+    improved = improved_plant(case, _tempered(case, chosen, float(learned().scale_nats(0.0))))
+    return Result(diagnosis, improved, case, predicted, None, checked)
 
 
 def _blamed(by_form: FormScores, judged: Judged) -> Suspect | None:
@@ -129,7 +133,7 @@ def _innovations(case: Case, fitted: FittedHypothesis) -> list[NDArray[np.float6
 
 def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probability: float) -> Hypothesis:
     classes = [case.library.effects[name].class_text for name in fitted.effects]
-    own = estimates(case, fitted)
+    own = estimates(case, _tempered(case, fitted, weighed.scale))
     single = len(fitted.effects) == 1
     parameters = {
         symbol if single else f"{name}.{symbol}": entry
@@ -139,6 +143,11 @@ def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probabil
     same = [*_other_names(case, fitted.effects), *(entry.effects for entry in alike(weighed, fitted))]
     told = tuple(" + ".join(sorted(effects)) for effects in same)
     return Hypothesis(" + ".join(fitted.effects), " + ".join(classes), probability, parameters, told)
+
+
+def _tempered(case: Case, fitted: FittedHypothesis, scale: float) -> FittedHypothesis:
+    """The same with what is known of its numbers by the tempered likelihood that hypotheses are weighed by."""
+    return replace(fitted, fit=tempered(case, fitted.fit, scale))
 
 
 def _other_names(case: Case, effects: Sequence[str]) -> list[tuple[str, ...]]:

@@ -32,13 +32,14 @@ class Shape:
     times: Quantity | None
 
 
-def shape_of(found: FittedCurve) -> Shape:
-    """The curve f with weights b of covariance C, on a grid of x whose basis is B, less its mean: f = B b, cov f = B C B'."""
+def shape_of(found: FittedCurve, scale: float) -> Shape:
+    """The curve f with weights b of covariance C, on a grid of x whose basis is B, less its mean: f = B b, cov f = scale B C B', where the
+    likelihood counts as its root of order `scale`."""
     curve = found.curve
     low, high = np.percentile(np.concatenate(curve.x), [RARE_PERCENT, 100.0 - RARE_PERCENT])
     x = np.linspace(low, high, INSTANTS)
     about = curve.basis(x) - curve.basis(x).mean(axis=0)
-    sd = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", about, found.covariance, about), 0.0))
+    sd = np.sqrt(scale * np.maximum(np.einsum("ij,jk,ik->i", about, found.covariance, about), 0.0))
     size = curve.times.size
     target = target_of(found.case.library, curve.target)
     times = None if curve.times is ALONE else curve.times

@@ -108,12 +108,15 @@ def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
     """One standard deviation of those of an effect's numbers that are not found by their slopes."""
     if effect.shown_in_readings:
         return {symbol: decisions.GRID_SD * v for symbol, v in fit.hypothesis.effects[effect.name].items()}
-    if effect.is_noise:
-        return colour_sd(case, fit.hypothesis, effect)
     beside = [p for p in effect.parameters if p.role in (Role.JITTER, Role.HOLD, Role.SHIFT)]
-    if effect.name in case.stated:
+    if effect.name in case.stated and not effect.is_noise:
         return {p.symbol: case.stated_sd[effect.name][p.symbol] for p in beside}
-    return {p.symbol: _sd_by_likelihood(case, fit.hypothesis, effect.name, p) for p in beside}
+    untempered = (
+        colour_sd(case, fit.hypothesis, effect)
+        if effect.is_noise
+        else {p.symbol: _sd_by_likelihood(case, fit.hypothesis, effect.name, p) for p in beside}
+    )
+    return {symbol: float(np.sqrt(fit.tempering)) * deviation for symbol, deviation in untempered.items()}
 
 
 def _sd_by_likelihood(case: Case, hypothesis: Hypothesis, name: str, parameter: EffectParameter) -> float:

@@ -71,7 +71,7 @@ class _Columns:
 @dataclass(frozen=True, eq=False)
 class Fit:
     """What fits best, the log of its likelihood and posterior, and the linear problem there: `information` (k, k) v = -`pull` (k,),
-    theta first, then `free`, both with the prior.
+    theta first, then `free`, both with the prior. Its information is of the likelihood raised to 1 / `tempering`.
     """
 
     hypothesis: Hypothesis
@@ -80,6 +80,7 @@ class Fit:
     free: tuple[Free, ...]
     information: Array
     pull: Array
+    tempering: float = 1.0
 
     @property
     def promised(self) -> float:
@@ -268,6 +269,16 @@ def unfitted(case: Case, noisy: Hypothesis) -> Fit | None:
     information, pull = np.zeros_like(start.information), np.zeros_like(start.pull)
     _add_prior(case, start.hypothesis, start.free, information, pull)
     return replace(start, information=information, pull=pull)
+
+
+def tempered(case: Case, found: Fit, scale: float) -> Fit:
+    """The fit with what is known of its numbers where the likelihood L counts as L^(1 / scale), as no model is exact: with C the prior's,
+
+    A' = (A - C) / scale + C                                                 Miller and Dunson 2019, eq (2.4)
+    """
+    prior = np.zeros_like(found.information)
+    _add_prior(case, found.hypothesis, found.free, prior, np.zeros_like(found.pull))
+    return replace(found, information=prior + (found.information - prior) / scale, tempering=scale)
 
 
 def _add_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free], information: Array, pull: Array) -> None:

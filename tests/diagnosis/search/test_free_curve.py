@@ -8,6 +8,7 @@ import pytest
 from diagnosis import decisions
 from diagnosis.decide.consequence import curve_that_predicts, curve_with_held_out
 from diagnosis.decide.holdout import Holdout
+from diagnosis.decide.weighing import learned
 from diagnosis.detect.curves import KNOTS, curves
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.signals import signals
@@ -66,7 +67,7 @@ def test_the_evidence_of_a_curve_is_nearly_that_of_the_effect_it_stands_for(
 def test_its_shape_is_that_of_the_missing_torque(plant: BoundPlant, found: FittedCurve) -> None:
     # Truth: -c |v| v / J_E about its mean: to three tenths of its size, as 20 s tell no better which way the axis leans that little, and
     # within four of the curve's own deviations everywhere.
-    shape = shape_of(found)
+    shape = shape_of(found, float(learned().scale_nats(0.0)))
     true = -DRAG / plant.plant.parameters["J_E"].values[0] * np.abs(shape.x) * shape.x
     error = shape.value - (true - true.mean())
     assert np.std(error) < 0.3 * np.std(true)
