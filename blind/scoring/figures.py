@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from blind.scoring.judge import Judgement
 from blind.scoring.statistics import Bin, calibration_error, clopper_pearson
 
+Judged = TypeVar("Judged")
 SEVERE = 2.0  # noise floors
 LOST_FRAMES = "loop.dropped_frames"
 
@@ -50,6 +52,7 @@ def figures(judged: Sequence[Judgement], bins: Sequence[Bin]) -> list[Figure]:
         _share("cause in the first three", single, lambda j: j.rank is not None and j.rank <= 3, 0.98),
         _share("cause in the stated ambiguous set", single, lambda j: j.set_hit or j.rank == 1, None),
         _size("effect's parameters, median relative error", _errors(seen), np.median, 0.03),
+        _share("effect's parameters, truth in its 95 % interval", _within(seen), bool, 0.93),
         _share("two effects, both named", double, lambda j: j.all_named, 0.80),
         _share(
             "out of library: no wrong name, place right", outside, lambda j: not j.wrong_names and j.place_right, 0.85
@@ -97,10 +100,14 @@ def _errors(judged: Sequence[Judgement]) -> list[float]:
     return [error for j in judged if j.truth.kind in ("single", "small", "timing") for error in j.parameter_errors]
 
 
+def _within(judged: Sequence[Judgement]) -> list[bool]:
+    return [within for j in judged for within in j.within_interval]
+
+
 def _share(
     name: str,
-    judged: Sequence[Judgement],
-    right: Callable[[Judgement], bool],
+    judged: Sequence[Judged],
+    right: Callable[[Judged], bool],
     target: float | None,
     at_most: bool = False,
 ) -> Figure:

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from blind.cases.sealed import TrueEffect, Truth
+from blind.effects.equivalent import Equivalent
 from blind.rigs.bench import FILTERED
 from blind.scoring.results import Answer, Names, RankedAnswer, Unreadable
 
-NOBODY = RankedAnswer(frozenset(), 0.0, {}, ())
+NOBODY = RankedAnswer(frozenset(), 0.0, {}, {}, ())
+WITHIN_95 = 1.96  # standard deviations
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class Judgement:
     wrong_names: Names = frozenset()
     found: Names = frozenset()
     parameter_errors: tuple[float, ...] = ()
+    within_interval: tuple[bool, ...] = ()
     stated: tuple[float, bool] | None = None
     time_s: float | None = None
 
@@ -61,6 +64,7 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
         wrong_names=frozenset(name for name in answer.found if not any(_fits(name, e) for e in truth.effects)),
         found=answer.found,
         parameter_errors=_parameter_errors(truth, answer.ranked),
+        within_interval=_within_interval(truth, top) if top and means(top.names, truth) else (),
         stated=_stated_probability(truth, answer, top) if answer.verdict == "gap" else None,
         time_s=answer.time_s,
     )
@@ -190,12 +194,25 @@ def _parameter_errors(truth: Truth, ranked: Sequence[RankedAnswer]) -> tuple[flo
     errors = []
     for symbol, true in truth.effects[0].parameters.items():
         if true.main and true.scale > 0.0 and symbol in named[0].parameters:
-            estimate = named[0].parameters[symbol]
-            if true.either_sign:
-                errors.append(abs(abs(estimate) - abs(true.value)) / true.scale)
-            else:
-                errors.append(abs(estimate - true.value) / true.scale)
+            errors.append(abs(_off(named[0].parameters[symbol], true)) / true.scale)
     return tuple(errors)
+
+
+def _within_interval(truth: Truth, top: RankedAnswer) -> tuple[bool, ...]:
+    """Whether each main parameter of effects that are all named lies within the interval of 95 % that is stated of it."""
+    found = []
+    for effect in truth.effects:
+        for symbol, true in effect.parameters.items():
+            key = symbol if len(truth.effects) == 1 else f"{effect.name}.{symbol}"
+            if true.main and key in top.deviations:
+                off = _off(top.parameters[key], true)
+                found.append(abs(off) < WITHIN_95 * top.deviations[key])
+    return tuple(found)
+
+
+def _off(estimate: float, true: Equivalent) -> float:
+    """How far an estimate is from the truth, whose sign may not be told."""
+    return abs(estimate) - abs(true.value) if true.either_sign else estimate - true.value
 
 
 def _stated_probability(truth: Truth, answer: Answer, top: RankedAnswer | None) -> tuple[float, bool]:

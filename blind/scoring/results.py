@@ -11,11 +11,13 @@ Names = frozenset[str]
 
 @dataclass(frozen=True)
 class RankedAnswer:
-    """One ranked answer: one effect or several jointly, its stated probability, parameters by effect-free symbol, its look-alikes."""
+    """One ranked answer: one effect or several jointly, its stated probability, parameters by symbol, or by "effect.symbol" of several,
+    with the standard deviations that are stated of them, its look-alikes."""
 
     names: Names
     probability: float
     parameters: Mapping[str, float]
+    deviations: Mapping[str, float]
     ambiguous_with: tuple[Names, ...]
 
 
@@ -83,6 +85,7 @@ def _ranked(entry: Mapping[str, Any]) -> RankedAnswer:
         names=names_of(entry["effect"]),
         probability=float(entry["probability"]),
         parameters={key: float(value["value"]) for key, value in parameters.items()},
+        deviations={key: float(value["sd"]) for key, value in parameters.items() if value.get("sd")},
         ambiguous_with=tuple(names_of(name) for name in entry.get("ambiguous_with") or ()),
     )
 

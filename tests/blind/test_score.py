@@ -86,6 +86,16 @@ def answer(
     }  # fmt: skip
 
 
+def named(folder: Path, kind: str, parameters: Mapping[str, tuple[float, float]], *names: str) -> Any:
+    """The share of truths in their interval where one case is answered by its right name, with these values and deviations of numbers."""
+    (entry,) = sealed(folder / "cases", [truth(kind, *(effect(name) for name in names))])
+    content = answer("gap", names[0].split(".")[0], [(" + ".join(names), 1.0)], list(names))
+    told = {key: {"value": value, "sd": sd, "unit": "1"} for key, (value, sd) in parameters.items()}
+    content["effects"][0]["parameters"] = told
+    write(folder / "results", entry, content)
+    return figures(folder / "cases", folder / "results")["effect's parameters, truth in its 95 % interval"]
+
+
 def perfect(entry: Truth) -> dict[str, Any]:
     names = [e.name for e in entry.effects]
     if not names:
@@ -133,6 +143,17 @@ def test_worthless_answers_score_nothing_but_the_detection_they_claim(tmp_path: 
     assert found["expected calibration error"].value == 1.0
     judged = [figure for figure in found.values() if figure.target is not None and figure.cases]
     assert [figure.name for figure in judged if figure.met] == ["detected, severity after re-tune >= 2"]
+
+
+def test_a_truth_lies_in_its_interval_to_two_deviations(tmp_path: Path) -> None:
+    # Truth: k = 2 of each effect; what is no main parameter does not count, nor one without a deviation.
+    far = {"k": (2.3, 0.1), "shape": (9.0, 0.1)}
+    assert named(tmp_path / "1", "single", far, LIBRARY[0]).value == 0.0
+    assert named(tmp_path / "2", "single", {**far, "k": (2.3, 0.2)}, LIBRARY[0]).value == 1.0
+    assert named(tmp_path / "3", "single", {"k": (2.3, 0.0)}, LIBRARY[0]).value is None
+    both = {f"{LIBRARY[0]}.k": (2.1, 0.1), f"{LIBRARY[1]}.k": (1.0, 0.1)}
+    found = named(tmp_path / "4", "double", both, LIBRARY[0], LIBRARY[1])
+    assert (found.value, found.cases) == (0.5, 2)
 
 
 def test_frames_lost_at_random_count_in_one_figure_of_shrinkage_only(tmp_path: Path) -> None:
