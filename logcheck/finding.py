@@ -38,7 +38,7 @@ class Finding:
 class Found:
     """A finding with the rows (n,) that it leaves out, and those (n,) with which another log begins; None where there are none.
 
-    Of rows that are left out for what an output reads, only that reading is.
+    Of rows that are left out for what an output reads, only that reading is; for what an input is, only that command, which is not known.
     """
 
     finding: Finding
@@ -60,9 +60,23 @@ def beginning(found: Iterable[Found], rows: int) -> Rows:
 
 
 def without(log: RunLog, found: Sequence[Found]) -> RunLog:
-    """The log with nothing read where readings were found to be none."""
-    y = log.y.copy()
+    """The log with nothing read where readings were found to be none, and commands between their neighbours where they were."""
+    y = np.where(marked(log.columns.outputs, found, len(log.t_s)), np.nan, log.y)
+    return replace(log, y=y, u=bridged(log, marked(log.columns.inputs, found, len(log.t_s)))) if found else log
+
+
+def marked(columns: Sequence[str], found: Iterable[Found], rows: int) -> Rows:
+    """What was found to be left out of each of these columns alone (rows, columns)."""
+    out: Rows = np.zeros((rows, len(columns)), bool)
     for entry in found:
-        if entry.finding.column in log.columns.outputs and entry.excluded is not None:
-            y[entry.excluded, log.columns.outputs.index(entry.finding.column)] = np.nan
-    return replace(log, y=y) if found else log
+        if entry.finding.column in columns and entry.excluded is not None:
+            out[:, columns.index(entry.finding.column)] |= entry.excluded
+    return out
+
+
+def bridged(log: RunLog, unknown: Rows) -> Array:
+    """The inputs (n, inputs), those that are `unknown` (n, inputs) on the line between their neighbours."""
+    u = log.u.copy()
+    for column, rows in zip(u.T, unknown.T, strict=True):
+        column[rows] = np.interp(log.t_s[rows], log.t_s[~rows], column[~rows]) if rows.any() else column[rows]
+    return u

@@ -12,12 +12,13 @@ import numpy as np
 from logcheck.between import duplicate_findings, plant_pair_findings
 from logcheck.breaks import break_findings
 from logcheck.facts import PlantFacts, plant_facts
-from logcheck.finding import REFUSE, Finding, Found, Rows, beginning, without
+from logcheck.finding import REFUSE, Finding, Found, Rows, beginning, bridged, marked, without
 from logcheck.inputs import input_findings
 from logcheck.plant import plant_findings
 from logcheck.stamps import Timing, timing, timing_findings
 from logcheck.stands.foretold import foretold_findings
 from logcheck.values import Excitation, Saturation, excitations, saturations, value_findings
+from logcheck.zeros import zero_input_findings
 from records.errors import BadInput
 from records.log import RunLog
 from records.reasons import Note
@@ -28,7 +29,7 @@ from sim.columns import log_columns
 @dataclass(frozen=True, eq=False)
 class LogIntegrity:
     """One log: its timing, saturation by input, excitation by column, which rows (n,) are left out, which readings (n, outputs) beside
-    these, and which rows (n,) begin another log."""
+    these, which commands (n, inputs) are not known, and which rows (n,) begin another log."""
 
     name: str
     timing: Timing
@@ -36,6 +37,7 @@ class LogIntegrity:
     excitation: Mapping[str, Excitation]
     excluded: Rows
     unread: Rows
+    unknown: Rows
     begins: Rows
 
 
@@ -120,6 +122,9 @@ def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> I
         return
     breaks = list(break_findings(log, name))
     yield from breaks
+    zeros = [found for column in log.columns.inputs for found in zero_input_findings(log, name, column)]
+    yield from zeros
+    log = without(log, zeros)
     own = list(value_findings(log, name, facts.steps, facts.positions, facts.stops, facts.moved_by))
     if any(entry.finding.severity == REFUSE for entry in own):
         yield from own
@@ -143,13 +148,10 @@ def _other_plant(log: RunLog, name: str, bound: BoundPlant) -> Found:
 
 
 def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts) -> LogIntegrity:
-    excluded = np.zeros(len(log.t_s), bool)
-    unread = np.zeros(log.y.shape, bool)
+    rows, own = len(log.t_s), (*log.columns.inputs, *log.columns.outputs)
+    excluded = np.zeros(rows, bool)
     for entry in found:
-        column = entry.finding.column
-        if entry.excluded is not None and column in log.columns.outputs:
-            unread[:, log.columns.outputs.index(column)] |= entry.excluded
-        elif entry.excluded is not None:
+        if entry.excluded is not None and entry.finding.column not in own:
             excluded |= entry.excluded
     is_other = any(entry.finding.kind in ("other_plant", "too_short") for entry in found)
     return LogIntegrity(
@@ -158,11 +160,19 @@ def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts)
         saturation={} if is_other else saturations(log, facts.limits),
         excitation={} if is_other else excitations(log, facts.steps),
         excluded=excluded,
-        unread=unread,
-        begins=beginning(found, len(log.t_s)),
+        unread=marked(log.columns.outputs, found, rows),
+        unknown=marked(log.columns.inputs, found, rows),
+        begins=beginning(found, rows),
     )
 
 
 def as_read(log: RunLog, looked: LogIntegrity) -> RunLog:
-    """The log with no reading where an output was not read, whatever stands there."""
-    return replace(log, y=np.where(looked.unread, np.nan, log.y)) if looked.unread.any() else log
+    """The log with no reading where an output was not read, whatever stands there, and commands that are not known between those beside."""
+    if not looked.unread.any() and not looked.unknown.any():
+        return log
+    return replace(log, y=np.where(looked.unread, np.nan, log.y), u=bridged(log, looked.unknown))
+
+
+def as_sent(log: RunLog, looked: LogIntegrity) -> RunLog:
+    """The log with no number for a command that is not known: what a law answered there cannot be compared."""
+    return replace(log, u=np.where(looked.unknown, np.nan, log.u)) if looked.unknown.any() else log

@@ -225,6 +225,10 @@ GLITCH_STEPS = Limit(20.0, "encoder steps", "on a coarse grid a leap is at least
 
 # zeros
 BESIDE_ZERO_STEPS = Limit(1.5, "least moves", "an axis that passes zero reads it once")
+MOST_ZEROS = Limit(0.1, "share of rows", "in which an input was not written down: one that is zero in more is switched")
+ZERO_STANDS = Limit(
+    0.1, "share", "of the places where an input goes to zero and back, at which it rests there: it is switched"
+)
 
 # stretches
 MOST_READINGS = Count(25_000, "readings", "time: two logs of a minute of two angles at 100 Hz are taken whole", "timed")

@@ -28,6 +28,7 @@ from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channe
 from replay.variants import EARLY_OUTPUT
 
 NOT_FOUND = "not_found"
+INPUT_UNKNOWN = "input_not_logged"
 IN_DOUBLE = "flown_in_double"
 AGREES_IN_DOUBLE = (
     "the law flew in double precision, as the log says, and no firmware did; run again in it, it agrees within rounding"
@@ -36,7 +37,7 @@ IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"
 ROUNDING_V = 1e-3
 BEHIND_LIMIT = 2  # rows off the limits after which what they did to the law's state shows in its answer
 # What is the log's doing alone: but for what it lacks, or holds twice, the firmware did as its table says.
-CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, IN_DOUBLE)
+CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, INPUT_UNKNOWN, IN_DOUBLE)
 NINE_DIGITS = "print nine digits, which hold all of a float32"
 ANGLES_ROUNDED = f"the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees: {NINE_DIGITS}"
 
@@ -105,7 +106,7 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
     if run.arithmetic == FIXED:
         return _in_fixed_point(flight, table, run, residuals)
     if at_s is None and not flight.missing:
-        return FirmwareReplay(True, True, None, None, None, residuals)
+        return _agreeing(flight, residuals)
     within_V = agrees_as_printed(flight, table)
     as_printed = None if within_V is None else Told(LOG_ROUNDING, _as_printed(flight, within_V))
     in_double = log.arithmetic == DOUBLE
@@ -118,12 +119,23 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
             True, False, at_s, NOT_FOUND, _unexplained(residuals, _hint(flight, table, run, int(rows[0]))), residuals
         )
     if told.cause is None and at_s is None:
-        return FirmwareReplay(True, True, None, None, None, residuals)
+        return _agreeing(flight, residuals)
     if told.cause is None and in_double:
         return FirmwareReplay(True, False, None, IN_DOUBLE, AGREES_IN_DOUBLE, residuals)
     if told.cause is None:
         return FirmwareReplay(True, False, at_s, LOG_ROUNDING, ANGLES_ROUNDED, residuals)
     return FirmwareReplay(True, False, at_s, told.cause, told.sentence, residuals, told.incidents, told.alternatives)
+
+
+def _agreeing(flight: ReplayedLog, residuals: tuple[Residual, ...], said: str | None = None) -> FirmwareReplay:
+    """A firmware that agrees in every bit of what the log holds of its commands."""
+    unknown = flight.unknown
+    if not unknown.any():
+        return FirmwareReplay(True, True, None, None, said, residuals)
+    rows, first_s = int(unknown.sum()), float(flight.t_s[np.argmax(unknown)])
+    lacks = f"the log lacks what was sent in {rows} row{'s' if rows > 1 else ''}, first at {first_s:.6g} s"
+    sentence = f"{said + '; ' if said else ''}{lacks}; in all others every bit agrees"
+    return FirmwareReplay(True, False, None, INPUT_UNKNOWN, sentence, residuals)
 
 
 def _as_printed(flight: ReplayedLog, within_V: float) -> str:
@@ -152,7 +164,7 @@ def _in_fixed_point(
     """What is told of a log whose law computed in fixed point: the table's own firmware, what lies behind it, or no cause."""
     rows = np.flatnonzero(run.differs.any(axis=1))
     if not rows.size:
-        return FirmwareReplay(True, True, None, None, IN_FIXED_POINT, residuals)
+        return _agreeing(flight, residuals, IN_FIXED_POINT)
     at_s = float(flight.t_s[rows[0]])
     behind_it = _behind_words(flight, table, run, residuals, at_s)
     if behind_it is not None:
@@ -191,7 +203,7 @@ def _behind_words(
 
 
 def _residuals(log: RunLog, flight: ReplayedLog, run: Replayed) -> tuple[Residual, ...]:
-    present = ~np.isnan(flight.logged_V[:, 0])
+    present = ~np.isnan(flight.logged_V).any(axis=1)
     result = []
     columns = (flight.logged_V[present].T, run.u_V[present].T, run.differs[present].T)
     for name, logged, own, differs in zip(flight.input_names, *columns, strict=True):

@@ -24,7 +24,8 @@ PRINT_MARGIN = 1.0 + 1e-6
 class ReplayedLog:
     """Samples k = 0..n-1: references and angles (n, loops) in rad, logged inputs in V and their rounding `half_step_V`, alike.
 
-    A sample that the log lacks has NaN everywhere; where it lacks too many (`lacking`), rows stand as they come.
+    A sample that the log lacks has NaN everywhere, a command that is not known NaN alone; where it lacks too many (`lacking`), rows
+    stand as they come.
     `printings` are those of the inputs, of the references and of the angles, each in the order of the loops. Angles that are whole steps
     of their sensor, `in_steps` (loops), are as they were measured: what few digits they have is the sensor's doing.
     """
@@ -54,6 +55,14 @@ class ReplayedLog:
         return np.column_stack(
             [np.maximum(own.half_step(column), other.half_step(column)) for column, own, other in columns]
         )
+
+    @property
+    def unknown(self) -> NDArray[np.bool_]:
+        """Rows (n,) of the log in which a command is not known."""
+        unknown: NDArray[np.bool_] = np.asarray(np.isnan(self.logged_V).any(axis=1))
+        for first, behind in self.missing:
+            unknown[first:behind] = False
+        return unknown
 
     @property
     def unit(self) -> str:
@@ -115,7 +124,7 @@ def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
         logged_V=u_V,
         half_step_V=np.column_stack([p.half_step(column) for p, column in zip(written, u_V.T, strict=False)])
         * PRINT_MARGIN,
-        missing=_blocks(np.isnan(u_V[:, 0])),
+        missing=_blocks(~np.isin(np.arange(n), samples)),
         printings=written,
         steps_rad=steps_rad,
         rows=samples,

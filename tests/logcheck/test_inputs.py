@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from logcheck.integrity import as_read, as_sent
 from tests.logcheck.flight import clean, examined, kinds, with_column
 
 
@@ -44,3 +45,39 @@ def test_an_input_of_steps_is_not_called_cut_off() -> None:
     once = np.where(np.arange(2001) < 400, log.u[:, 1].max() + 0.1, log.u[:, 1])
     for u_T in (steps, once):
         assert "clipped" not in kinds(examined(with_column(log, "u_T_V", u_T)))
+
+
+@pytest.mark.parametrize(("column", "share"), [("u_M_V", 0.001), ("u_M_V", 0.05), ("u_T_V", 0.015)])
+def test_a_command_of_zero_now_and_then_is_not_known_and_taken_as_between_its_neighbours(
+    column: str, share: float
+) -> None:
+    """Truth: the flight of the compiled law, whose command was not written down in random rows; beside zero nobody sees it."""
+    log, place = clean(), clean().columns.inputs.index(column)
+    lost = np.random.default_rng(3).random(len(log.t_s)) < share
+    far = np.abs(log.column(column)) > 0.5
+    found = examined(with_column(log, column, np.where(lost, 0.0, log.column(column))))
+    assert kinds(found) == {"zero_command"}
+    (looked,) = found.logs
+    assert looked.unknown[lost & far, place].all()
+    assert not looked.unknown[~lost].any()
+    assert not looked.unread.any()
+    assert not looked.excluded.any()
+    taken = as_read(with_column(log, column, np.where(lost, 0.0, log.column(column))), looked)
+    assert np.abs(taken.u - log.u).max() < 1.0  # of up to 8 V that zero is off
+    assert np.array_equal(np.isnan(as_sent(log, looked).u), looked.unknown)
+
+
+def test_an_input_that_is_switched_off_passes_zero_or_is_limited_there_is_what_was_sent() -> None:
+    log, rows = clean(), np.arange(2001)
+    noise = np.random.default_rng(5).normal(0.0, 1.0, 2001)
+    stairs = np.where(rows % 97 == 50, 0.0, 1.0 + rows // 500)  # no switch: five levels, and zero in single rows
+    assert "zero_command" in kinds(examined(with_column(log, "u_T_V", stairs)))
+    sent = {
+        "on and off": np.where(rows % 97 == 50, 0.0, 5.0),
+        "pulses": np.where(rows % 7 == 0, 0.0, 3.0 + 0.01 * noise),
+        "rests": np.where(rows % 100 < 5, 0.0, 3.0 + 0.01 * noise),
+        "through zero": np.where(rows % 200 == 100, 0.0, np.where(rows % 200 < 100, 2.0, -2.0) + 0.01 * noise),
+        "limited": np.maximum(0.3 + 0.3 * noise, 0.0),
+    }
+    for values in sent.values():
+        assert "zero_command" not in kinds(examined(with_column(log, "u_T_V", values)))

@@ -65,6 +65,33 @@ def test_readings_of_zero_that_the_log_check_leaves_out_are_not_laid_on_the_firm
     assert "the firmware is cleared" in " ".join(said)
 
 
+def test_commands_of_zero_now_and_then_are_not_laid_on_the_firmware(tmp_path: Path) -> None:
+    """Truth: the flight of the table's own law; in 1.5 % of the rows the log holds 0 for one of its commands, or for a reading too."""
+    lost = np.random.default_rng(4).random((2, len(own().t_s))) < 0.015
+    u, y = own().u.copy(), own().y.copy()
+    u[lost[0], 0] = 0.0
+    save_log(tmp_path / "u.csv", replace(own(), u=u))
+    replay, said = recorded_replay(tmp_path / "u.csv", ce150_table(), plant())
+    assert replay.sent is None
+    assert said[0].startswith(f"u.csv: the log lacks what was sent in {lost[0].sum()} rows, first at ")
+    assert "in all others every bit agrees" in said[0]
+    y[lost[1], 1] = 0.0
+    save_log(tmp_path / "both.csv", replace(own(), u=u, y=y))
+    replay, said = recorded_replay(tmp_path / "both.csv", ce150_table(), plant())
+    assert replay.sent is None
+    assert "the firmware is cleared" in said[0]
+
+
+def test_a_firmware_at_fault_behind_commands_of_zero_is_still_told(tmp_path: Path) -> None:
+    """Truth: the law's output came one sample late, and the log lacks some of it."""
+    u = np.concatenate([own().u[:1], own().u[:-1]])
+    u[np.random.default_rng(4).random(len(u)) < 0.015, 0] = 0.0
+    save_log(tmp_path / "late.csv", replace(own(), u=u))
+    replay, said = recorded_replay(tmp_path / "late.csv", ce150_table(), plant())
+    assert replay.sent is not None
+    assert said[0].startswith("late.csv: the firmware sent its output one sample late")
+
+
 FIRST = [
     ("psi_rad", 1, np.nan, "the log lacks a sample that the firmware had, first at 0 s"),
     ("psi_rad", 1, 0.05, "the firmware is cleared"),

@@ -9,7 +9,7 @@ from codegen.law import generate_law
 from codegen.law_equations import state_words
 from codegen.scales import fastest, room, widest_reference
 from design.structure import stops
-from logcheck.integrity import OTHER_NUMBERS, as_read, examine
+from logcheck.integrity import OTHER_NUMBERS, as_read, as_sent, examine
 from logcheck.integrity import demand as demand_log
 from records.board import STM32G071
 from records.errors import VerificationFailed
@@ -17,7 +17,7 @@ from records.log import RunLog
 from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
-from replay.firmware import CLEARED, FirmwareReplay, demand_causal
+from replay.firmware import CLEARED, INPUT_UNKNOWN, FirmwareReplay, demand_causal
 from replay.flight import has_replayable_columns
 from replay.search import IN_FLIGHT
 from replay.stretches import replay_stretches
@@ -202,17 +202,24 @@ def _compared(
     if log.columns == log_columns(bound.model):
         found = examine([log], bound, names=[path.stem])
         demand_log(found, OTHER_NUMBERS)
-        begins, unread = found.logs[0].begins, bool(found.logs[0].unread.any())
-        if (
-            unread and replay_stretches(log, table, begins=begins).bit_exact
-        ):  # what is no reading of the axis the law had too
-            return replay, None
-        log = as_read(log, found.logs[0])
+        looked = found.logs[0]
+        begins, unread, sent = looked.begins, bool(looked.unread.any()), as_sent(log, looked)
+        if unread:  # what is no reading of the axis the law may have had too
+            whole = replay_stretches(sent, table, begins=begins)
+            if whole.bit_exact:
+                return replay, None
+            if whole.cause == INPUT_UNKNOWN:
+                return _not_compared(replay, path, whole.sentence)
+        log = as_sent(as_read(log, looked), looked)
     replayed = replay_stretches(log, table, begins=begins)
     if replayed.bit_exact and unread:
         said = "with the readings that the law had in place of those that were left out, every bit agrees"
-        return replace(replay, sent=None), f"{path.name}: {said}; its inputs are not compared bit by bit"
+        return _not_compared(replay, path, said)
     demand_causal(path, replayed)
     if replayed.cause not in CLEARED and not _lacks_its_beginning(replayed):
         return replay, None if replayed.cause is None else f"{path.name}: {replayed.sentence}"
-    return replace(replay, sent=None), f"{path.name}: {replayed.sentence}; its inputs are not compared bit by bit"
+    return _not_compared(replay, path, replayed.sentence)
+
+
+def _not_compared(replay: Replay, path: Path, said: str | None) -> tuple[Replay, str]:
+    return replace(replay, sent=None), f"{path.name}: {said}; its inputs are not compared bit by bit"

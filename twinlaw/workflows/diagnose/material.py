@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.diagnose import Material
 from logcheck.breaks import unbroken
-from logcheck.integrity import LogIntegrity, as_read, demand, examine
+from logcheck.integrity import LogIntegrity, as_read, as_sent, demand, examine
 from logcheck.stamps import from_their_start
 from logcheck.stretches import stretches
 from records.diagnosis import Firmware
@@ -16,7 +16,7 @@ from records.log import RunLog, load_log
 from records.plant import load_plant
 from records.reasons import Note
 from records.table import ControllerTable
-from replay.firmware import FirmwareReplay, demand_causal
+from replay.firmware import INPUT_UNKNOWN, FirmwareReplay, demand_causal
 from replay.table import replay_log, table_of
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant, bind
@@ -75,10 +75,10 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
 
 def _replayed(log: RunLog, path: Path, looked: LogIntegrity) -> FirmwareReplay | None:
     """The firmware run again on what it was given: all that was logged or, where that is not it, what was read."""
-    whole = replay_log(log, path, begins=looked.begins)
-    if whole is None or whole.bit_exact or not looked.unread.any():
+    whole = replay_log(as_sent(log, looked), path, begins=looked.begins)
+    if whole is None or whole.bit_exact or not looked.unread.any() or whole.cause == INPUT_UNKNOWN:
         return whole
-    read = replay_log(as_read(log, looked), path, begins=looked.begins)
+    read = replay_log(as_sent(as_read(log, looked), looked), path, begins=looked.begins)
     return whole if differs(None if read is None else read.record()) else read
 
 
