@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replay import thresholds
-from replay.flight import ReplayedLog, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
+from replay.flight import (
+    ReplayedLog,
+    advanced,
+    candidates_for_misread,
+    candidates_for_missing,
+    candidates_for_unmeasured,
+    lagged,
+)
 from replay.law import FLOAT64, Fold, ReplayLaw, Setup, each, number_type
 
 Array = NDArray[np.float64]
@@ -24,6 +31,7 @@ GRID_SLACK = 1e-3  # of a step: a number on a grid is known by its nearest step
 
 OUTPUT_HELD, SAMPLE_LOST, RESET = "dropped_frame", "lost_sample", "reset"
 STALE_ANGLES, STALE_REFERENCES, UNLOGGED = "stale_sample_once", "stale_reference_once", "sample_not_logged"
+MISREAD = "reading_not_as_logged"
 
 
 @dataclass(frozen=True)
@@ -50,6 +58,10 @@ class Trace:
     def kinds(self) -> Counter[str]:
         """How many incidents of each kind."""
         return Counter(incident.kind for incident in self.incidents)
+
+    def samples(self, kind: str) -> int:
+        """How many samples the incidents of a kind last."""
+        return sum(incident.samples for incident in self.incidents if incident.kind == kind)
 
 
 _Gap = tuple[Any, tuple[int, int]]  # the state before samples that the log lacks, and which they are
@@ -89,10 +101,11 @@ class Workshop:
 
 
 class Follower:
-    """A setup's law over a flight; `follow` gives the trace."""
+    """A setup's law over a flight; `follow` gives the trace. Where `misread`, the law may have had other readings than the log holds."""
 
-    def __init__(self, workshop: Workshop, setup: Setup) -> None:
+    def __init__(self, workshop: Workshop, setup: Setup, misread: bool = False) -> None:
         """Raises BadInput for a table that no law can be made from."""
+        self._misread = misread
         self._law = ReplayLaw(setup)
         self._flight = workshop.flight
         self.inputs = workshop.inputs(setup)
@@ -126,6 +139,8 @@ class Follower:
         """Incidents alone are no explanation: enough samples in which the output moved must be the law's own answers."""
         if not trace.incidents:
             return trace
+        if trace.samples(MISREAD) > thresholds.MOST_MISREAD * len(self.inputs):
+            return Trace(trace.incidents[0].first, ())
         moved = np.concatenate([[True], np.any(self._wanted[1:] != self._wanted[:-1], axis=1)])
         telling = moved & ~np.isnan(self._wanted).any(axis=1)
         explained = telling.copy()
@@ -168,8 +183,10 @@ class Follower:
         yield from self._never_read(row, state)
         yield from self._held(row, state)
         yield _Hypothesis(RESET, row, row, self._law.start(self.inputs[row, self._loops :]))
+        each_angle = [(STALE_ANGLES, slice(place, place + 1)) for place in range(self._loops, 2 * self._loops)]
         for kind, columns in (
             (STALE_ANGLES, slice(self._loops, 2 * self._loops)),
+            *(each_angle if self._loops > 1 else ()),
             (STALE_REFERENCES, slice(0, self._loops)),
         ):
             yield from self._other_input(row, state, kind, columns, self.inputs[row - 1, columns])
@@ -177,6 +194,8 @@ class Follower:
             yield from self._given(state, (row, row + 1), candidates_for_unmeasured(self._flight, row))
         if last_gap is not None and row <= last_gap[1][1] + 2:
             yield from self._not_logged(row, last_gap)
+        if self._misread:
+            yield from self._read_otherwise(row, state, thresholds.MISREAD_IN_A_ROW)
 
     def _begun(self) -> Iterator[_Hypothesis]:
         """Behind the first row, where angles that it lacks are those from which the law started, and which it answered."""
@@ -228,6 +247,24 @@ class Follower:
         changed[row, columns] = values
         if self._run(moved, row, row + 1, changed) == row + 1:
             yield _Hypothesis(kind, row, row + 1, moved)
+
+    def _read_otherwise(self, row: int, state: Any, rows: int) -> Iterator[_Hypothesis]:
+        """The law had other readings than the log holds, near these, in up to so many rows, and answered them exactly; of as few angles
+        as it takes."""
+        for candidates in candidates_for_misread(self._flight, row):
+            found = False
+            for candidate in candidates:
+                changed, moved = candidate[np.newaxis].astype(self.inputs.dtype), self._law.copied(state)
+                if self._law.run(moved, (0, 1), changed, *self._between(row, row + 1)) < 1:
+                    continue
+                yield _Hypothesis(MISREAD, row, row + 1, moved)
+                found = self._run(self._law.copied(moved), row + 1, min(row + 2, len(self.inputs))) > row + 1
+                if not found and 1 < rows < len(self.inputs) - row:
+                    behind = list(self._read_otherwise(row + 1, moved, rows - 1))
+                    found = bool(behind)
+                    yield from (replace(entry, first=row) for entry in behind)
+            if found:
+                return
 
     def _not_logged(self, row: int, gap: _Gap) -> Iterator[_Hypothesis]:
         """Samples that the log lacks: the law did not run, or was given the numbers that make its next answers fit."""

@@ -20,7 +20,7 @@ from records.log import DOUBLE, RunLog
 from records.table import ControllerTable
 from records.text.units import units_of
 from replay.arithmetic import FIXED, Replayed, replayed, replayed_in_fixed
-from replay.events import UNLOGGED
+from replay.events import MISREAD, UNLOGGED
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
 from replay.law import FLOAT32, FLOAT64
 from replay.printed import agrees_as_printed
@@ -37,7 +37,7 @@ IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"
 ROUNDING_V = 1e-3
 BEHIND_LIMIT = 2  # rows off the limits after which what they did to the law's state shows in its answer
 # What is the log's doing alone: but for what it lacks, or holds twice, the firmware did as its table says.
-CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, INPUT_UNKNOWN, IN_DOUBLE)
+CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, MISREAD, INPUT_UNKNOWN, IN_DOUBLE)
 NINE_DIGITS = "print nine digits, which hold all of a float32"
 ANGLES_ROUNDED = f"the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees: {NINE_DIGITS}"
 

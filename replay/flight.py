@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,13 @@ class ReplayedLog:
         return np.column_stack(
             [np.maximum(own.half_step(column), other.half_step(column)) for column, own, other in columns]
         )
+
+    @cached_property
+    def counted_in_double(self) -> bool:
+        """Whether its angles are whole counts multiplied in double precision."""
+        steps = np.array(self.steps_rad)
+        products = _in_float64(np.round(self.angle_rad / steps), steps).astype(np.float32)
+        return np.array_equal(products, self.angle_rad.astype(np.float32), equal_nan=True)
 
     @property
     def unknown(self) -> NDArray[np.bool_]:
@@ -277,6 +285,28 @@ def candidates_for_unmeasured(flight: ReplayedLog, sample: int) -> Sequence[Arra
         choices.append((count + UNMEASURED_REACH) * steps[axis])
     grid = np.array(np.meshgrid(*choices, indexing="ij")).reshape(flight.loops, -1).T
     return [np.hstack([flight.reference_rad[sample], angles])[np.newaxis] for angles in grid]
+
+
+def candidates_for_misread(flight: ReplayedLog, sample: int) -> list[list[Array]]:
+    """What the law may have measured in a sample whose angles the log holds otherwise: counts near these, by how many angles differ.
+
+    Each candidate is the sample's references, then angles (2 loops,). None is of angles that all moved to where they were a sample
+    before: those a law would have kept.
+    """
+    steps, near = np.array(flight.steps_rad), flight.angle_rad[max(0, sample - 1) : sample + 3]
+    if not steps.all() or sample == 0 or not np.isfinite(near[:2]).all():
+        return []
+    before, counts = np.round(near[:2] / steps)
+    ways = np.round(np.nan_to_num(np.abs(near - near[0])).max(axis=0) / steps)
+    reach = np.clip(ways, UNMEASURED_REACH.max(), thresholds.MISREAD_REACH).astype(int)
+    grid = np.meshgrid(*[np.arange(-most, most + 1) for most in reach], indexing="ij")
+    moves = np.stack(grid, axis=-1).reshape(-1, flight.loops)
+    moves = moves[~np.all((moves == 0) | (counts + moves == before), axis=1)]
+    moves = moves[np.argsort(np.abs(moves).sum(axis=1), kind="stable")]
+    product = _in_float64 if flight.counted_in_double else _in_float32
+    angles = np.where(moves == 0, flight.angle_rad[sample], product(counts + moves, steps))
+    rows = np.hstack([np.tile(flight.reference_rad[sample], (len(moves), 1)), angles])
+    return [list(rows[(moves != 0).sum(axis=1) == count]) for count in range(1, flight.loops + 1)]
 
 
 def _references_between(flight: ReplayedLog, block: tuple[int, int]) -> list[Array]:

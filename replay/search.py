@@ -15,6 +15,7 @@ from replay.build import fused_outputs
 from replay.columns import OFFSET, constant_inputs, given_columns, output_lines
 from replay.events import (
     GRID_SLACK,
+    MISREAD,
     OUTPUT_HELD,
     RESET,
     SAMPLE_LOST,
@@ -45,8 +46,10 @@ INCIDENT_SENTENCES = {
     STALE_ANGLES: "used the angles of the sample before",
     STALE_REFERENCES: "used the references of the sample before",
     UNLOGGED: "saw a sample that the log does not hold",
+    MISREAD: "had another reading than the log holds",
 }
-MIMICS = (STALE_ANGLES, STALE_REFERENCES)  # many of these may stand for one change of the firmware
+MIMICS = (STALE_ANGLES, STALE_REFERENCES, MISREAD)  # many of these may stand for one change of the firmware
+OF_THE_LOG = {UNLOGGED, MISREAD}  # incidents that are the log's doing
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,11 @@ class Explanation:
         kinds = self.trace.kinds()
         return sum(kinds[kind] for kind in MIMICS) <= thresholds.MANY_INCIDENTS
 
+    @property
+    def is_of_the_log(self) -> bool:
+        """True where the table's own law explains all, but for readings that the log lacks or holds otherwise."""
+        return not self.changes and set(self.trace.kinds()) <= OF_THE_LOG
+
 
 def explain(
     flight: ReplayedLog,
@@ -110,7 +118,7 @@ def explain(
         single = [*variants(table, shop.flight, others), *fitted_prefilters(table, shop.flight, shop.inputs(base))]
         lone = _lone(shop, table)
         found = [*_exact(shop, base, [()]), *_exact(shop, base, ((variant,) for variant in (*single, *lone)))]
-        if any(explanation.is_plain for explanation in found):
+        if any(explanation.is_plain or explanation.is_of_the_log for explanation in found):
             return _or_in_flight(_told(shop.flight, found), shop, table)
         if _is_fused(shop, table):
             sentence = "the firmware was built so that products and sums are fused into one rounding"
@@ -134,7 +142,7 @@ def _exact(shop: Workshop, base: Setup, combined: Iterable[tuple[Variant, ...]])
         for variant in changes[1:]:
             setup = variant.change(setup)
         try:
-            trace = Follower(shop, setup).follow()
+            trace = Follower(shop, setup, misread=not changes).follow()
         except BadInput:  # no law can be made from such numbers, so none flew
             continue
         if trace.explains:
@@ -208,8 +216,8 @@ def _told(flight: ReplayedLog, found: Sequence[Explanation]) -> Told:
         return _repeated(flight, best)
     equals = dict.fromkeys([REPEATED_ROW] if repeats is not None else [])
     equals |= dict.fromkeys(entry.name for entry in found if entry.cost == best.cost and entry.name != best.name)
-    if not best.changes and set(best.trace.kinds()) == {UNLOGGED} and not equals:
-        return _not_logged(flight, best)
+    if best.is_of_the_log and best.trace.incidents and not equals:
+        return _misread(flight, best) if best.trace.samples(MISREAD) else _not_logged(flight, best)
     clauses = [change.sentence for change in best.changes]
     clauses += [_incident_clause(flight, kind, count, best) for kind, count in best.trace.kinds().items()]
     incidents = tuple((entry.kind, float(flight.t_s[entry.first])) for entry in best.trace.incidents)
@@ -260,6 +268,20 @@ def _repeated(flight: ReplayedLog, found: Explanation) -> Told:
     )
     times = tuple((REPEATED_ROW, float(flight.t_s[entry.first])) for entry in incidents)
     return Told(REPEATED_ROW, sentence, times, (SAMPLE_LOST,))
+
+
+def _misread(flight: ReplayedLog, found: Explanation) -> Told:
+    incidents = found.trace.incidents
+    times = [float(flight.t_s[entry.first]) for entry in incidents]
+    first_s = next(time for time, entry in zip(times, incidents, strict=True) if entry.kind == MISREAD)
+    count = found.trace.samples(MISREAD)
+    rows = "a row" if count == 1 else f"{count} rows"
+    lacked = " or lacks one" if UNLOGGED in found.trace.kinds() else ""
+    sentence = (
+        f"the log holds another reading than the firmware had in {rows}{lacked}, first at {first_s:.6g} s; with readings near it "
+        "there, and everywhere else, the firmware is cleared"
+    )
+    return Told(MISREAD, sentence, tuple((entry.kind, time) for time, entry in zip(times, incidents, strict=True)))
 
 
 def _not_logged(flight: ReplayedLog, found: Explanation) -> Told:

@@ -23,6 +23,10 @@ LEAST_EXPLAINED_SHARE = Limit(
 )
 LEAST_EXPLAINED_SAMPLES = Count(20, "samples", "the same for short logs", "synthetic faults")
 
+MOST_MISREAD = Limit(0.1, "share of samples", "in which a log holds another reading: more are the firmware's doing")
+MISREAD_REACH = Count(24, "counts", "from the log's reading at most, where its axis moves so far in three rows: time")
+MISREAD_IN_A_ROW = Count(3, "samples", "in a row at most, as by chance one of twenty comes so")
+
 # flight
 MOST_MISSING = Limit(0.2, "share of samples", "with more missing, rows are taken as they come")
 CLOCK_ERROR = Limit(0.2, "sample periods", "measured period within 20 % of the stated replaces it")

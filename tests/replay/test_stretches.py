@@ -1,5 +1,6 @@
 """A log that lacks rows, readings or digits: the firmware is cleared in what is there, and one that is at fault is not."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.loop import fly, fly_law
 from tests.law_tables import ce150_table, changed_axis
-from tests.replay.firmware_flights import default_flight, lively, own, plant, rows_of
+from tests.replay.firmware_flights import Inputs, Wrapped, default_flight, flown, lively, own, plant, rows_of, stale
 from twinlaw.pages.diagnose.firmware import differs
 from verification.host_law import host_law
 
@@ -210,3 +211,36 @@ def test_a_log_cut_where_the_law_rested_begins_in_flight() -> None:
     assert np.ptp(log.y[:100], axis=0).max() < 0.01
     found = replay_stretches(log, TABLE)
     assert (found.bit_exact, found.cause) == (False, "begins_in_flight")
+
+
+@pytest.mark.parametrize("share", [0.005, 0.025, 0.05])
+def test_a_log_that_repeats_single_readings_of_a_slow_axis_clears_the_firmware(share: float) -> None:
+    """Truth: the law of the table flew; random rows of the log repeat the elevation's reading before, where it moved by three counts at
+    most."""
+    log = own()
+    counts = np.round(log.y[:, 0] / TABLE.axes[0].resolution_rad)
+    moved = np.append(False, np.abs(np.diff(counts)) > 0) & (np.append(0, np.abs(np.diff(counts))) <= 3)
+    kept = np.flatnonzero((np.random.default_rng(7).random(len(counts)) < share) & (np.arange(len(counts)) > 0))
+    kept = kept[np.abs(counts[kept] - counts[kept - 1]) <= 3]
+    assert moved[kept].any()
+    y = log.y.copy()
+    y[kept, 0] = log.y[kept - 1, 0]
+    found = replay_stretches(replace(log, y=y), TABLE)
+    rows = moved[kept].sum()
+    assert (found.bit_exact, found.cause) == (False, "reading_not_as_logged")
+    assert not differs(found.record())
+    said = f"in {rows} rows" if rows > 1 else "in a row"
+    assert f"the log holds another reading than the firmware had {said}" in (found.sentence or "")
+
+
+@pytest.mark.parametrize("columns", [[2, 3], [2]])
+def test_a_firmware_that_used_an_older_reading_is_not_cleared_by_the_log(columns: list[int]) -> None:
+    """Truth: in 2 % of the samples the law had angles of the sample before, and the log the right ones."""
+    chosen = np.random.default_rng(8).random(2001) < 0.02
+
+    def before(k: int, given: Sequence[Inputs]) -> Inputs:
+        return stale(columns)(k, given) if chosen[k] else given[k]
+
+    found = replay_stretches(flown(Wrapped(host_law(TABLE), before)), TABLE)
+    assert found.cause is not None
+    assert differs(found.record())
