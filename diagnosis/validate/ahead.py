@@ -15,6 +15,8 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.prediction import WINDOW_S, Span, predictions
+from logcheck.breaks import gaps
+from logcheck.thresholds import BRIDGED_ROWS
 from records.log import RunLog
 from records.logs.live import LiveRow
 from sim.added_effects import without_effects
@@ -110,6 +112,23 @@ class Lookahead:
         case = make_case(self._library, [log], stated=self._bound)
         hypothesis = nominal_hypothesis(case, LIVE_PROCESS_NOISE)
         found = predictions(case, case.flights[0], hypothesis, spans=spans)
+        starts, firsts = ([getattr(span, name) for span in spans] for name in ("start", "first"))
+        told = np.where(_settled(log)[starts], found[firsts], np.nan)
         return tuple(
-            Ahead(rows[span.first].t_s, rows[span.first].y, tuple(found[span.first].tolist())) for span in spans
+            Ahead(rows[first].t_s, rows[first].y, tuple(predicted))
+            for first, predicted in zip(firsts, told.tolist(), strict=True)
         )
+
+
+def _settled(log: RunLog) -> NDArray[np.bool_]:
+    """Rows and outputs (n, outputs) in which the filter does not go by what it reckoned along a stretch without readings of the output:
+    from SETTLE_S behind such a stretch on."""
+    settled = np.ones(log.y.shape, bool)
+    for column, y in zip(settled.T, log.y.T, strict=True):
+        read = np.flatnonzero(np.isfinite(y))
+        first = read[:1][read[:1] > BRIDGED_ROWS]
+        for again in (*first, *read[gaps(log.t_s[read])]):
+            last = int(np.searchsorted(read, again)) - 1
+            stops = int(read[last]) + 1 if last >= 0 else 0
+            column[stops : np.searchsorted(log.t_s, log.t_s[again] + decisions.SETTLE_S - 1e-9)] = False
+    return settled

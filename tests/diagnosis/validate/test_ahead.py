@@ -121,3 +121,25 @@ def test_a_reading_that_is_missing_leaves_no_gap_of_its_own(plant: BoundPlant, l
     fed(lookahead, blind)
     assert lookahead.gap[0] is not None
     assert lookahead.gap[1] is None
+
+
+@pytest.mark.parametrize("unread", [(0,), (0, 1)])
+def test_behind_a_stretch_without_readings_an_output_is_predicted_anew(
+    plant: BoundPlant, low_noise: list[LiveRow], unread: tuple[int, ...]
+) -> None:
+    """Truth: nothing is read of the outputs from 4 s to 5 s, of two others rows now and then; a prediction needs 2 s of readings, and
+    looks ahead by one."""
+    lost = {place: 4.0 <= row.t_s < 5.0 or place % 40 in (0, 1) for place, row in enumerate(low_noise)}
+    rows = [
+        replace(row, y=tuple(np.nan if lost[place] and k in unread else value for k, value in enumerate(row.y)))
+        for place, row in enumerate(low_noise)
+    ]
+    lookahead = Lookahead(plant)
+    found = fed(lookahead, rows)
+    times = np.array([entry.t_s for entry in found])
+    told = np.isfinite([entry.predicted for entry in found])
+    for column in range(2):
+        blind = (times > 5.0) & (times < 7.99) if column in unread else times < 0.0
+        assert not told[blind, column].any()
+        assert told[~blind & ((times < 4.0) | (times > 8.01)), column].all()
+    assert np.nanmax(np.abs(errors(found)[:, list(unread)])) < 9 * STEP_RAD
