@@ -10,7 +10,7 @@ from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
 from records.logs.restarts import restart_rows
-from records.reasons import Note
+from records.reasons import THINNED, Note
 
 
 @dataclass(frozen=True)
@@ -88,10 +88,13 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
         return
     yield from _order(log, name)
     if abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
-        yield say(
-            "sample_period",
-            f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s{_how_far(found, log)}; their own times are used",
-        )
+        apart = f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s"
+        of_so_many = _of_so_many(found, log)
+        if of_so_many and _moves(log.u) > thresholds.THINNED_MOVES:
+            yield say(THINNED, f"{apart}: {of_so_many}, and what was commanded in the others is not known: {_DOUBTFUL}")
+        else:
+            how_far = f": {of_so_many}" if of_so_many else f" ({found.period_error_ppm:+.0f} ppm)"
+            yield say("sample_period", f"{apart}{how_far}; their own times are used")
     if found.jitter_rms_s > thresholds.JITTER_PERIODS * found.period_s:
         yield say(
             "jitter",
@@ -100,12 +103,19 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
     yield from _missing(log, name, found)
 
 
-def _how_far(found: Timing, log: RunLog) -> str:
-    """How far the rows' period is off the stated one: by so much, or by so many rows of which one was written."""
+_DOUBTFUL = "whatever is found may be farther off than its interval says"
+
+
+def _of_so_many(found: Timing, log: RunLog) -> str:
+    """That one row was written of so many by the stated period, empty where it is another one."""
     times = found.period_s / log.sample_period_s
-    if round(times) >= 2 and abs(times / round(times) - 1.0) < thresholds.OF_SO_MANY:
-        return f": 1 in {round(times)} was written, and what was commanded in the others is not known"
-    return f" ({found.period_error_ppm:+.0f} ppm)"
+    is_whole = round(times) >= 2 and abs(times / round(times) - 1.0) < thresholds.OF_SO_MANY
+    return f"1 in {round(times)} was written" if is_whole else ""
+
+
+def _moves(u: Array) -> float:
+    """Share of the rows in which an input is not what it was in the row before."""
+    return float((np.diff(u, axis=0) != 0.0).any(axis=1).mean())
 
 
 def _by_jitter_ppm(found: Timing) -> float:

@@ -199,6 +199,7 @@ STANDING_S = Limit(
 )
 JITTER_PERIODS = Limit(0.01, "sample periods rms", "more is told")
 PERIOD_ERROR_PPM = Limit(500.0, "ppm", "beyond what a crystal does")
+THINNED_MOVES = Limit(0.1, "share of rows", "in which an input moves: one that moves less hardly did between the rows")
 OF_SO_MANY = Limit(0.01, "share of a whole number of periods", "rows that are so near to it apart are one in so many")
 
 # turned

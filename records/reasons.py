@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-# Kinds of notes that stand before any verdict: a column that may be another than it is called makes whatever follows doubtful, and so does
-# a clock that may be wrong.
-DOUBTS = ("columns_doubted", "columns_late", "columns_early", "clock_doubted")
+THINNED = "thinned_rows"
+# Kinds of notes that stand before any verdict: a column that may be another than it is called makes whatever follows doubtful, and so do
+# a clock that may be wrong and commands that nobody wrote down.
+DOUBTS = ("columns_doubted", "columns_late", "columns_early", "clock_doubted", THINNED)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ def identification_quality(result: Identification, truth: Mapping[str, float]) -
             *off_truth(result.estimates, truth),
             *(held_out_look(test) for test in result.holdout),
             *told_flags(result.estimates, result.at_bound),
-            *(flag(text) for text in (*contradicting, *result.flags, *filter(None, [result.doubt]))),
+            *(flag(text) for text in (*filter(None, [result.doubt]), *contradicting, *result.flags)),
             *([flag(f"interrupted before {', '.join(result.unfinished)}", Colour.RED)] if result.unfinished else []),
         )
     )

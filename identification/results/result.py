@@ -46,7 +46,7 @@ class Identification:
     """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides,
     `holdout` how the identified plant predicts logs that were not used. `unfinished` are the values that a fit which was interrupted had
     come to; they are in the plant, without sd of their own. `remarks` tell what is odd in the data themselves, `flags` what makes
-    the estimates doubtful, `doubt` which columns may be others than they are called.
+    the estimates doubtful, `doubt` what makes all of them so: columns that may be others, a clock, commands not known.
     """
 
     plant: Plant

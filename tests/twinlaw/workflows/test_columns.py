@@ -8,8 +8,9 @@ import pytest
 from diagnosis import decisions
 from records.errors import BadInput
 from tests.diagnosis.arm import arm, arm_log
-from twinlaw.workflows.identify.columns import asked_for_ranges, demand_columns, where_most_moves
-from twinlaw.workflows.identify.inputs import Inputs
+from tests.replay.firmware_flights import own, plant, rows_of
+from twinlaw.workflows.identify.columns import asked_for_columns, asked_for_ranges, demand_columns, where_most_moves
+from twinlaw.workflows.identify.inputs import Inputs, looked_at
 
 
 def test_of_a_long_log_the_rows_in_which_its_outputs_travel_most_are_looked_at() -> None:
@@ -64,3 +65,12 @@ def test_readings_where_a_sensor_s_range_ends_are_told_and_left_out_of_the_fit_a
     (said,) = asked.notes
     assert said.startswith(f"a: theta_rad never exceeds {level:.5g} rad")
     assert asked_for_ranges(Inputs((), {"a": log}, {}), arm()).notes == ()
+
+
+def test_rows_of_which_every_second_was_written_stand_before_the_estimates_and_are_no_green() -> None:
+    """Truth: a closed loop at 10 ms, whose log holds every second row, and says 10 ms."""
+    log = own()
+    thinned = rows_of(log, np.arange(len(log.t_s)) % 2 == 0)
+    inputs = asked_for_columns(looked_at(Inputs((), {"thinned": thinned, "own": log}, {}), plant()), plant())
+    assert inputs.doubt.startswith("thinned: the rows are 0.02 s apart, not 0.01 s: 1 in 2 was written")
+    assert not any("1 in 2 was written" in note for note in inputs.notes)

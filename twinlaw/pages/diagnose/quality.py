@@ -2,9 +2,10 @@
 
 from records.diagnosis import Diagnosis
 from records.quality import MISFIT, Colour, Look, Quality, flag
+from records.reasons import DOUBTS, THINNED
 from twinlaw.pages.diagnose.firmware import amiss
 from twinlaw.pages.diagnose.retune import parameters_alone
-from twinlaw.pages.diagnose.words import doubts_in_words, misfits, words
+from twinlaw.pages.diagnose.words import misfits, words
 
 
 def diagnosis_quality(diagnosis: Diagnosis) -> Quality:
@@ -12,7 +13,10 @@ def diagnosis_quality(diagnosis: Diagnosis) -> Quality:
     flags = [_verdict(diagnosis)]
     if amiss(diagnosis.firmware):
         flags.append(flag(amiss(diagnosis.firmware), Colour.RED))
-    if doubts_in_words(diagnosis.note_records):
+    doubts = {note.kind for note in diagnosis.note_records} & set(DOUBTS)
+    if THINNED in doubts:
+        flags.append(flag("rows of which one in so many was written"))
+    if doubts - {THINNED}:
         flags.append(flag("columns that may be others than they are called"))
     looks = [MISFIT.look(f"{name} on the logs held out", misfit) for name, misfit in misfits(diagnosis).items()]
     return Quality((*looks, *(entry for entry in flags if entry is not None)))

@@ -16,11 +16,11 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from identification.runs.rows import trimmed
 from records.log import RunLog
-from records.reasons import DOUBTS, Note
+from records.reasons import Note
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from twinlaw.cli import console
-from twinlaw.workflows.identify.inputs import Inputs, looked_at, read_inputs
+from twinlaw.workflows.identify.inputs import Inputs, doubts_first, looked_at, read_inputs
 
 
 def usable_inputs(
@@ -49,9 +49,8 @@ def asked_for_columns(inputs: Inputs, bound: BoundPlant) -> Inputs:
     """The inputs with what is to be known of their logs' columns; raises BadInput where these are not what they are called."""
     with console.stage("asking whether the columns are what they are called"):
         told = demand_columns(bound, inputs.logs)
-    doubts = [note.said for note in told if note.kind in DOUBTS and note.said]
-    notes = tuple(note.said for note in told if note.kind not in DOUBTS and note.said)
-    return replace(inputs, notes=(*inputs.notes, *notes), doubt="; ".join(doubts))
+    doubt, notes = doubts_first(told)
+    return replace(inputs, notes=(*inputs.notes, *notes), doubt="; ".join(filter(None, [inputs.doubt, doubt])))
 
 
 def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note, ...]:

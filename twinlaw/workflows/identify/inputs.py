@@ -18,6 +18,7 @@ from records.experiment import Experiment, load_experiment
 from records.log import RunLog, load_log
 from records.plant import SCHEMA as PLANT_SCHEMA
 from records.plant import coefficient_names
+from records.reasons import DOUBTS, Note
 from records.text import checks
 from records.text.reading import read_toml
 from sim.bind import BoundPlant
@@ -29,8 +30,8 @@ Limits = Mapping[str, tuple[float, float]]
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Experiments in the paper's order; logs by the name of their file, those to fit and those to predict; what is odd in these, and
-    which columns may be others than they are called."""
+    """Experiments in the paper's order; logs by the name of their file, those to fit and those to predict; what is odd in these, and what
+    makes whatever follows doubtful."""
 
     experiments: tuple[Experiment, ...]
     logs: Mapping[str, RunLog]
@@ -87,8 +88,15 @@ def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
         for some in (inputs.logs, inputs.holdout)
     ]
     logs, holdout = (dict(zip(entry.names, entry.logs, strict=True)) for entry in parts)
-    notes = tuple(note.said for note in (*found.notes, *parts[0].notes, *parts[1].notes) if note.said)
-    return replace(inputs, logs=logs, holdout=holdout, notes=notes)
+    told = [note for note in (*found.notes, *parts[0].notes, *parts[1].notes) if note.said]
+    doubt, notes = doubts_first(told)
+    return replace(inputs, logs=logs, holdout=holdout, notes=notes, doubt=doubt)
+
+
+def doubts_first(told: Sequence[Note]) -> tuple[str, tuple[str, ...]]:
+    """What makes all that follows doubtful, in one sentence, and what else is to be known."""
+    doubts, others = ([note.said for note in told if note.said and (note.kind in DOUBTS) is so] for so in (True, False))
+    return "; ".join(doubts), tuple(others)
 
 
 def _usable(log: RunLog, looked: LogIntegrity, findings: Sequence[Finding]) -> RunLog:
