@@ -56,7 +56,16 @@ def _temporary() -> Path:
     return place if user in (None, place.stat().st_uid) else Path(tempfile.mkdtemp(prefix="twinlaw-"))
 
 
-CACHE_DIR = cache_dir(Path(__file__).resolve().parent.parent, os.environ.get("TWINLAW_CACHE"))
+def elsewhere(asked: str | None, found: Path) -> str:
+    """What is to be said where the folder that was asked for is not the one in use; empty where it is, or none was."""
+    if not asked or Path(asked).expanduser().absolute() == found:
+        return ""
+    return f"TWINLAW_CACHE={asked} cannot be written: what can be made again is kept in {found}"
+
+
+_ASKED = os.environ.get("TWINLAW_CACHE")
+CACHE_DIR = cache_dir(Path(__file__).resolve().parent.parent, _ASKED)
+NOT_AS_ASKED = elsewhere(_ASKED, CACHE_DIR)
 
 
 def is_whole(product: Path) -> bool:

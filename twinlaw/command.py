@@ -17,7 +17,7 @@ from io import TextIOWrapper
 
 from jobs.threads import told_late
 from records.errors import BadInput, VerificationFailed
-from toolchain.cache import CACHE_DIR
+from toolchain.cache import CACHE_DIR, NOT_AS_ASKED
 from twinlaw.cli import console
 from twinlaw.cli.parser import WrongCommandLine
 from twinlaw.verbs import build_parser
@@ -30,6 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         gc.disable()  # to read modules takes a quarter longer where rubbish is looked for, of which there is none
     _stand_in_for_closed_streams()
     _print_anything()
+    if alone and NOT_AS_ASKED:
+        console.remark(NOT_AS_ASKED)
     words = list(sys.argv[1:] if arguments is None else arguments)
     # Matplotlib would keep its list of fonts in the home folder, and complain where there is none.
     os.environ.setdefault("MPLCONFIGDIR", str(CACHE_DIR / "matplotlib"))

@@ -44,6 +44,26 @@ def test_a_name_that_is_no_utf8_is_refused_before_anything_is_made(name: bytes, 
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.parametrize("writable", [True, False])
+def test_a_cache_that_cannot_be_written_where_it_was_asked_for_is_told_once(tmp_path: Path, writable: bool) -> None:
+    """Truth: in place of the folder stands a file, and nothing is made there; doctor names both."""
+    asked = tmp_path / "asked"
+    if not writable:
+        asked.touch()
+    given = {**os.environ, "TWINLAW_CACHE": str(asked), "PYTHONPATH": str(ROOT)}
+    words = [sys.executable, "-m", "twinlaw.command", "doctor", "--json"]
+    done = subprocess.run(words, cwd=tmp_path, env=given, capture_output=True, text=True, check=False)
+    told = f"twinlaw: TWINLAW_CACHE={asked} cannot be written: what can be made again is kept in "
+    found = {entry["name"]: entry for entry in json.loads(done.stdout)}
+    if writable:
+        assert done.stderr == ""
+        assert found["cache"]["found"] == str(asked)
+        assert "TWINLAW_CACHE" not in found
+        return
+    assert done.stderr == f"{told}{found['cache']['found']}\n"
+    assert found["TWINLAW_CACHE"]["found"] is None
+
+
 def test_a_name_in_utf8_is_told_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["design", "--plant", str(tmp_path / "plän λ.toml")]) == 2
     assert "plän λ.toml" in capsys.readouterr().err

@@ -127,10 +127,19 @@ def notes(sentences: Iterable[str]) -> None:
         print(f"- {unsigned_zeros(sentence)}")
 
 
+def remark(message: str) -> None:
+    """Print one line on stderr that is no error."""
+    _on_stderr(f"twinlaw: {message}")
+
+
 def fail(message: str) -> None:
     """Print one line on stderr, marked as an error; where nothing can be written there the exit status alone tells."""
+    _on_stderr(f"{paint('twinlaw: error:', 31, sys.stderr)} {' '.join(message.split())}")
+
+
+def _on_stderr(line: str) -> None:
     try:
-        sys.stderr.write(f"{paint('twinlaw: error:', 31, sys.stderr)} {' '.join(message.split())}\n")
+        sys.stderr.write(f"{line}\n")
         sys.stderr.flush()
     except (
         OSError

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from records.errors import BadInput
-from toolchain.cache import CACHE_DIR
+from toolchain.cache import CACHE_DIR, NOT_AS_ASKED
 from twinlaw.cli import console, options
 
 # Asked itself, as what pip noted of it is as old as the last `make`.
@@ -93,6 +93,8 @@ def examine() -> Iterator[Requirement]:
     yield Requirement("Python", NEEDED, platform.python_version(), "")
     yield Requirement("system", "see the README: where it runs", f"{platform.system()} {platform.machine()}", "")
     yield Requirement("cache", NEEDED, str(CACHE_DIR), "")
+    if NOT_AS_ASKED:
+        yield Requirement("TWINLAW_CACHE", "the cache where you want it", None, "name a folder that can be written")
     yield from packages(_project())
     yield Requirement("C compiler", NEEDED, _compiler(), "make run, or pip install ziglang")
     for program, (purpose, remedy) in PROGRAMS.items():
