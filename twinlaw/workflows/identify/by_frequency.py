@@ -115,9 +115,9 @@ def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, 
     model = lateral_model(plant, names)
     logs, held = _read(chosen, holdout, log_columns())
     found = _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant), told)
-    name, log = next(iter(logs.items()))
+    name = max(logs, key=lambda name: len(logs[name].t_s))  # a sweep takes longer than what is flown beside it
     truth = None if true is None else truth_of(true, lateral_model(true, model.names), found.fit)
-    return Done(found, truth, lateral_flight(log, name, plant))
+    return Done(found, truth, lateral_flight(logs[name], name, plant))
 
 
 def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
