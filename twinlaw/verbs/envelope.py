@@ -27,7 +27,7 @@ from identification.envelope.record import facts, modes_facts, modes_summary, op
 from identification.envelope.state_equation.free_run import Model
 from identification.envelope.study import Study, study
 from identification.envelope.truth.figures import drawn
-from identification.envelope.truth.fly import fly
+from identification.envelope.truth.fly import FlightTest, fly
 from identification.envelope.truth.linear import linearised
 from identification.envelope.truth.plan import plan
 from records.errors import BadInput
@@ -66,7 +66,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Fly or read, identify, write, tell."""
     flights, origin, exact = _flights(chosen)
-    _demand_shown(chosen.show, flights)
     if not any(flight.use == "identification" for flight in flights):
         raise BadInput("flights", origin, "none to identify from", 'one with use = "identification"', "set its use")
     starts = NONE if chosen.starts is None else load_starts(chosen.starts, flights)
@@ -130,9 +129,9 @@ def _left(path: Path, saved: list[Study]) -> str:
     return f"{path} holds {held}; {again}"
 
 
-def _demand_shown(name: str | None, flights: Sequence[Flight]) -> None:
+def _demand_shown(name: str | None, flights: Sequence[Flight | FlightTest]) -> None:
     """Raise BadInput now for a condition that no flight identifies."""
-    known = sorted({flight.condition.name for flight in flights if flight.use == "identification"})
+    known = dict.fromkeys(flight.condition.name for flight in flights if flight.use == "identification")
     if name is not None and name not in known:
         raise BadInput("--show", "command line", repr(name), f"one of {', '.join(known)}", "name one of these")
 
@@ -143,10 +142,13 @@ Exact = Callable[[Condition], Model]
 def _flights(chosen: argparse.Namespace) -> tuple[tuple[Flight, ...], str, Exact | None]:
     """Read or flown, where they came from, and the exact model of a condition where it is known."""
     if chosen.flights is not None:
-        return load_flights(chosen.flights), str(chosen.flights), None
-    machine = drawn(chosen.seed)
+        flights = load_flights(chosen.flights)
+        _demand_shown(chosen.show, flights)
+        return flights, str(chosen.flights), None
+    machine, tests = drawn(chosen.seed), plan()
+    _demand_shown(chosen.show, tests)
     with console.stage(f"flying the simulated helicopter, seed {chosen.seed}"):
-        flights = fly(machine, plan(), chosen.seed)
+        flights = fly(machine, tests, chosen.seed)
     period_s = flights[0].sample_period_s
     if chosen.keep_flights:
         for flight in flights:

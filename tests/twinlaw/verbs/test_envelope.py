@@ -141,6 +141,14 @@ def test_the_verb_identifies_interpolates_and_draws(answered: Answered) -> None:
     assert {entry["mode"] for entry in told["modes"]} == {"phugoid", "Dutch roll"}
 
 
+def test_a_condition_to_show_that_the_study_has_not_is_refused_before_anything_is_flown(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys
+) -> None:
+    monkeypatch.setattr("twinlaw.verbs.envelope.fly", None)
+    assert main(["envelope", "--show", "HA3000ft-40kts", "--out", str(tmp_path / "out")]) == 2
+    assert "expected one of HA6000ft-30kts, HA6000ft-50kts, HA6000ft-65kts" in capsys.readouterr().err
+
+
 def test_a_condition_to_show_that_no_flight_identifies_is_refused(folder: Path, tmp_path: Path, capsys) -> None:
     assert main(["envelope", "--show", "HF3000ft-60kts", "--out", str(tmp_path / "out"), str(folder)]) == 2
     assert "--show: got 'HF3000ft-60kts', expected one of HF3000ft-50kts, HF3000ft-70kts" in capsys.readouterr().err
