@@ -13,7 +13,7 @@ from records.text.units import unit_of
 from sim.bind import BoundPlant
 from twinlaw.pages.identify.truth import off, told, true_values, z
 from twinlaw.pages.page import Section, Table
-from twinlaw.pages.plots import COLOURS, Curve, Panel, row
+from twinlaw.pages.plots import COLOURS, Curve, Panel, stack
 
 HEADING = ("data", "parameter", "unit", "range")
 Stages = Sequence[tuple[str, Estimate]]
@@ -97,13 +97,13 @@ def evolution_plot(stages: Stages) -> str:
     found = [(title, stage.searched[0]) for title, stage in stages if stage.searched and stage.searched[0].bits]
     if not found:
         return ""
-    first, others = found[:1], found[1:]
-    panels = [Panel("fitness / 10^4", _curves(part)) for part in (first, others) if part]
-    return row(panels, ["generation"] * len(panels), height_in=3.0)
+    curves = [_curve(*entry) for entry in zip(found, cycle(COLOURS))]
+    panels = [Panel("fitness / 10^4", part) for part in (curves[:1], curves[1:]) if part]
+    return stack(
+        panels, "generation", panel_height_in=2.2
+    )  # names of experiments leave two panels side by side no room
 
 
-def _curves(found: Sequence[tuple[str, Searched]]) -> tuple[Curve, ...]:
-    return tuple(
-        Curve(np.arange(1.0, len(entry.best) + 1.0), np.array(entry.best) / 1e4, _short(title), colour)
-        for (title, entry), colour in zip(found, cycle(COLOURS))
-    )
+def _curve(stage: tuple[str, Searched], colour: str) -> Curve:
+    title, entry = stage
+    return Curve(np.arange(1.0, len(entry.best) + 1.0), np.array(entry.best) / 1e4, _short(title), colour)
