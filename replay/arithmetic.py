@@ -10,7 +10,7 @@ from codegen.law import generate_law
 from records.errors import BadInput
 from records.table import ControllerTable
 from replay import thresholds
-from replay.flight import ReplayedLog
+from replay.flight import ReplayedLog, candidates_for_misread
 from verification.fixed_stimuli import words_from_floats
 from verification.host_law import HostLaw
 
@@ -64,6 +64,42 @@ def replayed_in_fixed(flight: ReplayedLog, table: ControllerTable) -> Replayed:
     differs = words_from_floats(flight.logged_V, formats.voltage_places) != outputs
     u_V: Array = outputs.view(np.int32).astype(np.float64) * 2.0**-formats.voltage_places
     return Replayed(FIXED, u_V, differs & ~np.isnan(flight.logged_V), 2.0**-formats.voltage_places)
+
+
+def misread_in_fixed(flight: ReplayedLog, table: ControllerTable) -> list[int] | None:
+    """The samples in which the law in fixed point had readings near those that the log holds, if with them every word agrees; else None.
+
+    As few as may be: of the readings that give a sample's words those are taken with which the law follows the log farthest.
+    """
+    formats = law_formats(table)
+    host = HostLaw(generate_law(table, FIXED), FIXED, loops=table.loops)
+    given = words_from_floats(_given(flight), formats.angle_places)
+    logged, known = words_from_floats(flight.logged_V, formats.voltage_places), ~np.isnan(flight.logged_V)
+    moved = int(np.any(logged[1:] != logged[:-1], axis=1).sum())
+    most = min(thresholds.MOST_MISREAD * len(given), (1.0 - thresholds.LEAST_EXPLAINED_SHARE) * moved)
+
+    def follows(state: NDArray[np.uint32], first: int, behind: int) -> int:
+        _, answered = host.run(state, np.ascontiguousarray(given[first:behind, np.newaxis]))
+        differs = np.any((answered[:, 0] != logged[first:behind]) & known[first:behind], axis=1)
+        return first + (int(np.argmax(differs)) if differs.any() else behind - first)
+
+    state, row, found = host.start(np.ascontiguousarray(given[:1, len(table.loops) :])), 0, list[int]()
+    while (stop := follows(state, row, len(given))) < len(given):
+        state, _ = host.run(state, np.ascontiguousarray(given[row:stop, np.newaxis]))
+        states = []
+        for candidates in candidates_for_misread(flight, stop):
+            words = words_from_floats(np.array(candidates), formats.angle_places)[np.newaxis]
+            after, answered = host.run(np.repeat(state, len(candidates), axis=0), np.ascontiguousarray(words))
+            fits = np.all((answered[0] == logged[stop]) | ~known[stop], axis=1)
+            states = [np.ascontiguousarray(after[place : place + 1]) for place in np.flatnonzero(fits).tolist()]
+            if states:
+                break
+        if not states or len(found) >= most:
+            return None
+        ahead, row = min(stop + 1 + thresholds.LOOK_AHEAD, len(given)), stop + 1
+        state = max(states, key=lambda entry: follows(entry, stop + 1, ahead))
+        found.append(stop)
+    return found
 
 
 def _given(flight: ReplayedLog) -> Array:

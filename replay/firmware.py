@@ -19,12 +19,12 @@ from records.errors import BadInput
 from records.log import DOUBLE, RunLog
 from records.table import ControllerTable
 from records.text.units import units_of
-from replay.arithmetic import FIXED, Replayed, replayed, replayed_in_fixed
+from replay.arithmetic import FIXED, Replayed, misread_in_fixed, replayed, replayed_in_fixed
 from replay.events import MISREAD, UNLOGGED
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
 from replay.law import FLOAT32, FLOAT64
 from replay.printed import agrees_as_printed
-from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channel_cause, explain
+from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channel_cause, explain, other_readings
 from replay.variants import EARLY_OUTPUT
 
 NOT_FOUND = "not_found"
@@ -176,6 +176,13 @@ def _in_fixed_point(
             f"{IN_FIXED_POINT}, up to {since_s:.6g} s; behind what the log lacks there the law's state is not known"
         )
         return FirmwareReplay(True, False, at_s, MISSING_ROWS, sentence, residuals)
+    misread = None if lacks.any() else misread_in_fixed(flight, table)
+    if misread:
+        sentence = (
+            f"the firmware computes in fixed point; {other_readings(len(misread), float(flight.t_s[misread[0]]))}"
+        )
+        incidents = tuple((MISREAD, float(flight.t_s[row])) for row in misread)
+        return FirmwareReplay(True, False, at_s, MISREAD, sentence, residuals, incidents)
     behind = " behind rows that the log lacks" if any(flight.t_s[first] < at_s for first, _ in flight.missing) else ""
     sentence = f"{IN_FIXED_POINT}, until {at_s:.2f} s{behind}; in fixed point no other law is tried"
     return FirmwareReplay(True, False, at_s, NOT_FOUND, sentence, residuals)
@@ -189,7 +196,22 @@ def _behind_fixed(
         run = replayed_in_fixed(flight, table)
     except BadInput:  # a table that no words can hold never flew in them
         return None
-    return _behind_words(flight, table, run, residuals, at_s)
+    behind_it = _behind_words(flight, table, run, residuals, at_s)
+    return behind_it or _misread_words(flight, table, residuals, at_s)
+
+
+def _misread_words(
+    flight: ReplayedLog, table: ControllerTable, residuals: tuple[Residual, ...], at_s: float | None
+) -> FirmwareReplay | None:
+    """A law in fixed point that had other readings than the log holds, of which one changes all words behind it."""
+    if np.isnan(np.hstack([flight.reference_rad, flight.angle_rad])).any():
+        return None
+    rows = misread_in_fixed(flight, table)
+    if not rows:
+        return None
+    incidents = tuple((MISREAD, float(flight.t_s[row])) for row in rows)
+    sentence = f"the firmware computes in fixed point; {other_readings(len(rows), incidents[0][1])}"
+    return FirmwareReplay(True, False, at_s, MISREAD, sentence, residuals, incidents)
 
 
 def _behind_words(

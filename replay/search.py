@@ -274,14 +274,17 @@ def _misread(flight: ReplayedLog, found: Explanation) -> Told:
     incidents = found.trace.incidents
     times = [float(flight.t_s[entry.first]) for entry in incidents]
     first_s = next(time for time, entry in zip(times, incidents, strict=True) if entry.kind == MISREAD)
-    count = found.trace.samples(MISREAD)
-    rows = "a row" if count == 1 else f"{count} rows"
-    lacked = " or lacks one" if UNLOGGED in found.trace.kinds() else ""
-    sentence = (
-        f"the log holds another reading than the firmware had in {rows}{lacked}, first at {first_s:.6g} s; with readings near it "
-        "there, and everywhere else, the firmware is cleared"
-    )
+    sentence = other_readings(found.trace.samples(MISREAD), first_s, lacks=UNLOGGED in found.trace.kinds())
     return Told(MISREAD, sentence, tuple((entry.kind, time) for time, entry in zip(times, incidents, strict=True)))
+
+
+def other_readings(rows: int, first_s: float, lacks: bool = False) -> str:
+    """What is said of a log that in so many rows holds another reading than the law had, or `lacks` some."""
+    where = "a row" if rows == 1 else f"{rows} rows"
+    return (
+        f"the log holds another reading than the firmware had in {where}{' or lacks one' * lacks}, first at {first_s:.6g} s; with readings "
+        "near it there, and everywhere else, the firmware is cleared"
+    )
 
 
 def _not_logged(flight: ReplayedLog, found: Explanation) -> Told:

@@ -18,7 +18,18 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.loop import fly, fly_law
 from tests.law_tables import ce150_table, changed_axis
-from tests.replay.firmware_flights import Inputs, Wrapped, default_flight, flown, lively, own, plant, rows_of, stale
+from tests.replay.firmware_flights import (
+    Inputs,
+    Lossy,
+    Wrapped,
+    default_flight,
+    flown,
+    lively,
+    own,
+    plant,
+    rows_of,
+    stale,
+)
 from twinlaw.pages.diagnose.firmware import differs
 from verification.host_law import host_law
 
@@ -244,3 +255,24 @@ def test_a_firmware_that_used_an_older_reading_is_not_cleared_by_the_log(columns
     found = replay_stretches(flown(Wrapped(host_law(TABLE), before)), TABLE)
     assert found.cause is not None
     assert differs(found.record())
+
+
+@pytest.mark.parametrize("share", [0.005, 0.05])
+def test_so_it_does_where_the_law_computes_in_fixed_point(share: float) -> None:
+    """Truth: the same in integers; behind a reading that is another all words differ."""
+    log = flown(host_law(TABLE, "fixed"))
+    kept = 1 + np.flatnonzero(np.random.default_rng(7).random(len(log.t_s) - 1) < share)
+    y = log.y.copy()
+    y[kept] = log.y[kept - 1]
+    rows = np.flatnonzero((y != log.y).any(axis=1))
+    found = replay_stretches(replace(log, y=y), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "reading_not_as_logged")
+    assert [at_s for _, at_s in found.incidents] == log.t_s[rows].tolist()
+    assert "in fixed point" in (found.sentence or "")
+
+
+def test_a_law_in_fixed_point_that_lost_samples_is_not_cleared_by_readings() -> None:
+    """Truth: in 1 % of the samples the law was not run and its output stayed."""
+    lost = np.random.default_rng(9).random(2001) < 0.01
+    log = flown(Lossy(host_law(TABLE, "fixed"), lambda k: "law" if lost[k] else None))
+    assert differs(replay_stretches(log, TABLE).record())
