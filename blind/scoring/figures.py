@@ -41,6 +41,7 @@ def figures(judged: Sequence[Judgement], bins: Sequence[Bin]) -> list[Figure]:
     timing = [j for j in severe if j.truth.kind == "timing"]
     double = [j for j in severe if j.truth.kind == "double" and _each_severe(j)]
     outside = [j for j in seen if j.truth.kind == "outside"]
+    inside = [j for j in severe if j.truth.kind != "outside"]
     plain = [j for j in effects if j.truth.severity >= SEVERE]
     return [
         _share("false alarms on cases without effect", nominal, lambda j: j.detected, 0.01, at_most=True),
@@ -51,6 +52,7 @@ def figures(judged: Sequence[Judgement], bins: Sequence[Bin]) -> list[Figure]:
         _share("cause first, single library effect", single, lambda j: j.rank == 1, 0.90),
         _share("cause in the first three", single, lambda j: j.rank is not None and j.rank <= 3, 0.98),
         _share("cause in the stated ambiguous set", single, lambda j: j.set_hit or j.rank == 1, None),
+        _share("right effects to 10 % in size, yet not named", inside, lambda j: j.left_out, 0.02, at_most=True),
         _size("effect's parameters, median relative error", _errors(seen), np.median, 0.03),
         _share("effect's parameters, truth in its 95 % interval", _within(seen), bool, 0.93),
         _share("two effects, both named", double, lambda j: j.all_named, 0.80),

@@ -1,6 +1,6 @@
 """One case judged: the truth against the answer."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from blind.cases.sealed import TrueEffect, Truth
@@ -10,6 +10,7 @@ from blind.scoring.results import Answer, Names, RankedAnswer, Unreadable
 
 NOBODY = RankedAnswer(frozenset(), 0.0, {}, {}, ())
 WITHIN_95 = 1.96  # standard deviations
+NEARLY = 0.1  # of a parameter's scale
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class Judgement:
     found: Names = frozenset()
     parameter_errors: tuple[float, ...] = ()
     within_interval: tuple[bool, ...] = ()
+    left_out: bool = False
     stated: tuple[float, bool] | None = None
     time_s: float | None = None
 
@@ -65,6 +67,7 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
         found=answer.found,
         parameter_errors=_parameter_errors(truth, answer.ranked),
         within_interval=_within_interval(truth, top) if top and means(top.names, truth) else (),
+        left_out=_is_left_out(truth, answer),
         stated=_stated_probability(truth, answer, top) if answer.verdict == "gap" else None,
         time_s=answer.time_s,
     )
@@ -186,33 +189,42 @@ def _signals(text: str) -> set[str]:
 
 def _parameter_errors(truth: Truth, ranked: Sequence[RankedAnswer]) -> tuple[float, ...]:
     """Relative errors of a single effect's main parameters, from the entry that names it, whatever its rank."""
-    if len(truth.effects) != 1:
-        return ()
     named = [entry for entry in ranked if means(entry.names, truth)]
-    if not named:
+    if len(truth.effects) != 1 or not named:
         return ()
-    errors = []
-    for symbol, true in truth.effects[0].parameters.items():
-        if true.main and true.scale > 0.0 and symbol in named[0].parameters:
-            errors.append(abs(_off(named[0].parameters[symbol], true)) / true.scale)
-    return tuple(errors)
+    return tuple(_off(named[0], key, true) / true.scale for key, true in _main(truth, named[0]) if true.scale > 0.0)
 
 
 def _within_interval(truth: Truth, top: RankedAnswer) -> tuple[bool, ...]:
     """Whether each main parameter of effects that are all named lies within the interval of 95 % that is stated of it."""
-    found = []
+    known = [(key, true) for key, true in _main(truth, top) if key in top.deviations]
+    return tuple(_off(top, key, true) < WITHIN_95 * top.deviations[key] for key, true in known)
+
+
+def _is_left_out(truth: Truth, answer: Answer) -> bool:
+    """Whether the right effects were found, each main parameter to NEARLY, and yet not named."""
+
+    def right(entry: RankedAnswer) -> bool:
+        main = list(_main(truth, entry))
+        return bool(main) and all(_off(entry, key, true) <= NEARLY * true.scale for key, true in main)
+
+    found = any(means(entry.names, truth) and right(entry) for entry in answer.ranked)
+    return found and not means(answer.found, truth)
+
+
+def _main(truth: Truth, entry: RankedAnswer) -> Iterator[tuple[str, Equivalent]]:
+    """The true main parameters that an answer by the right names has, each with its key there."""
     for effect in truth.effects:
         for symbol, true in effect.parameters.items():
             key = symbol if len(truth.effects) == 1 else f"{effect.name}.{symbol}"
-            if true.main and key in top.deviations:
-                off = _off(top.parameters[key], true)
-                found.append(abs(off) < WITHIN_95 * top.deviations[key])
-    return tuple(found)
+            if true.main and key in entry.parameters:
+                yield key, true
 
 
-def _off(estimate: float, true: Equivalent) -> float:
+def _off(entry: RankedAnswer, key: str, true: Equivalent) -> float:
     """How far an estimate is from the truth, whose sign may not be told."""
-    return abs(estimate) - abs(true.value) if true.either_sign else estimate - true.value
+    estimate = entry.parameters[key]
+    return abs(abs(estimate) - abs(true.value) if true.either_sign else estimate - true.value)
 
 
 def _stated_probability(truth: Truth, answer: Answer, top: RankedAnswer | None) -> tuple[float, bool]:

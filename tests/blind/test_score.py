@@ -142,7 +142,9 @@ def test_worthless_answers_score_nothing_but_the_detection_they_claim(tmp_path: 
     assert all(found[name].value == 0.0 for name in HIGHER_IS_BETTER[2:])
     assert found["expected calibration error"].value == 1.0
     judged = [figure for figure in found.values() if figure.target is not None and figure.cases]
-    assert [figure.name for figure in judged if figure.met] == ["detected, severity after re-tune >= 2"]
+    # What is not found cannot be left out either.
+    claimed = ["detected, severity after re-tune >= 2", "right effects to 10 % in size, yet not named"]
+    assert [figure.name for figure in judged if figure.met] == claimed
 
 
 def test_a_truth_lies_in_its_interval_to_two_deviations(tmp_path: Path) -> None:
@@ -154,6 +156,17 @@ def test_a_truth_lies_in_its_interval_to_two_deviations(tmp_path: Path) -> None:
     both = {f"{LIBRARY[0]}.k": (2.1, 0.1), f"{LIBRARY[1]}.k": (1.0, 0.1)}
     found = named(tmp_path / "4", "double", both, LIBRARY[0], LIBRARY[1])
     assert (found.value, found.cases) == (0.5, 2)
+
+
+@pytest.mark.parametrize(("k", "found", "share"), [(2.1, [], 1.0), (2.1, [LIBRARY[0]], 0.0), (2.5, [], 0.0)])
+def test_a_right_effect_that_is_not_named_is_counted_where_its_size_is_right(
+    tmp_path: Path, k: float, found: list[str], share: float
+) -> None:
+    (entry,) = sealed(tmp_path / "cases", [truth("single", effect(LIBRARY[0]))])
+    ranked = [(LIBRARY[1], 0.5), (LIBRARY[0], 0.3)]
+    write(tmp_path / "results", entry, answer("gap", "azimuth", ranked, found, k=k))
+    value = figures(tmp_path / "cases", tmp_path / "results")["right effects to 10 % in size, yet not named"].value
+    assert value == share
 
 
 def test_frames_lost_at_random_count_in_one_figure_of_shrinkage_only(tmp_path: Path) -> None:
