@@ -95,9 +95,6 @@ REST_SHARES = Limits(
 )
 
 # Priors of numbers (fit)
-GRID_SD = Limit(
-    3e-4, "share of the step", "a range of a thousand counts holds a coarse grid's step to a count", DEVELOPMENT
-)
 SIZE_SD = Limit(
     20.0, "references", "standard deviation of an effect's size before the data: an effect costs ln 20 nats"
 )

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import decisions
 from diagnosis.fit.coloured_noise import colour_sd
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit
@@ -14,6 +13,7 @@ from diagnosis.fit.jitter import jitter_sd
 from diagnosis.fit.profile_likelihood import known_to
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, known_beginning
+from diagnosis.library.coarse_grid import grid_sd
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
@@ -107,7 +107,7 @@ def _supposed(case: Case, found: FittedHypothesis) -> list[str]:
 def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
     """One standard deviation of those of an effect's numbers that are not found by their slopes."""
     if effect.shown_in_readings:
-        return {symbol: decisions.GRID_SD * v for symbol, v in fit.hypothesis.effects[effect.name].items()}
+        return {effect.symbol(Role.STEP): _grid_sd(case, fit.hypothesis, effect)}
     beside = [p for p in effect.parameters if p.role in (Role.JITTER, Role.HOLD, Role.SHIFT)]
     if effect.name in case.stated and not effect.is_noise:
         return {p.symbol: case.stated_sd[effect.name][p.symbol] for p in beside}
@@ -117,6 +117,14 @@ def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
         else {p.symbol: _sd_by_likelihood(case, fit.hypothesis, effect.name, p) for p in beside}
     )
     return {symbol: float(np.sqrt(fit.tempering)) * deviation for symbol, deviation in untempered.items()}
+
+
+def _grid_sd(case: Case, hypothesis: Hypothesis, effect: Effect) -> float:
+    library = case.library
+    output = library.bound.model.places.sensors[effect.place].output
+    place = library.outputs.index(output)
+    read = np.concatenate([flight.filter_input.read[:, place] for flight in case.flights])
+    return grid_sd(read, hypothesis.effects[effect.name][effect.symbol(Role.STEP)], library.steps[effect.place])
 
 
 def _sd_by_likelihood(case: Case, hypothesis: Hypothesis, name: str, parameter: EffectParameter) -> float:

@@ -46,6 +46,12 @@ def coarse_step(y: Array, step: float) -> float | None:
     return None
 
 
+def grid_sd(y: Array, grid: float, step: float) -> float:
+    """What is known of the step `grid` of the grid that readings y (n,) lie on, one standard deviation: the ends of what was read lie on it
+    to the rounding of a count each, (2 / 12)^(1/2) `step` over the grid's steps between them."""
+    return float(np.sqrt(2.0 / 12.0) * step / max(float(np.nanmax(y) - np.nanmin(y)) / grid, 1.0))
+
+
 def grid_evidence(y: Array, grid: float, step: float) -> float:
     """Log likelihood, by (1), that changes of the readings y (n,) gain from lying on a grid instead of anywhere; 0 where they do not."""
     counts = _counts(y, step)
