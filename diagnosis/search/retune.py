@@ -86,13 +86,14 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
 
 
 def _stated_numbers(case: Case, at: Fit) -> Iterator[_Stated]:
-    """All that the plant file states to a spread."""
-    count = len(case.free)
+    """All that the plant file states to a spread, each where the top of the linear problem has it: a fit ends a little before, where next to
+    nothing moves at all."""
+    count, step = len(case.free), -np.linalg.solve(at.information, at.pull)
     told = np.maximum(1.0 - np.diag(np.linalg.pinv(at.information)), LEAST_TOLD).tolist()
-    yield from map(_Stated, range(count), at.hypothesis.theta.tolist(), told)
-    for entry, share in zip(at.free, told[count:], strict=True):
+    yield from map(_Stated, range(count), (at.hypothesis.theta + step[:count]).tolist(), told)
+    for entry, further, share in zip(at.free, step[count:].tolist(), told[count:], strict=True):
         if entry.stated is not None:
-            yield _Stated(entry, (entry.of(at.hypothesis) - entry.stated) / entry.scale, share)
+            yield _Stated(entry, (entry.of(at.hypothesis) - entry.stated) / entry.scale + further, share)
 
 
 def _alone(at: Fit, freed: _Stated) -> Hypothesis:
