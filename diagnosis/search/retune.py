@@ -86,8 +86,7 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
 
 
 def _stated_numbers(case: Case, at: Fit) -> Iterator[_Stated]:
-    """All that the plant file states to a spread, each where the top of the linear problem has it: a fit ends a little before, where next to
-    nothing moves at all."""
+    """All that the plant file states to a spread, each where the top of the linear problem has it: a fit ends a little before."""
     count, step = len(case.free), -np.linalg.solve(at.information, at.pull)
     told = np.maximum(1.0 - np.diag(np.linalg.pinv(at.information)), LEAST_TOLD).tolist()
     yield from map(_Stated, range(count), (at.hypothesis.theta + step[:count]).tolist(), told)
