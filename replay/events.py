@@ -167,7 +167,7 @@ class Follower:
             reached = self._run(self._law.copied(hypothesis.state), hypothesis.behind, ahead)
             carries = reached > hypothesis.behind or reached == n
             # Behind a number that was found because its answer fits, the next may be missing as well.
-            carries = carries or (hypothesis.kind == UNLOGGED and bool(np.isnan(self.inputs[reached]).any()))
+            carries = carries or (hypothesis.kind in (UNLOGGED, MISREAD) and bool(np.isnan(self.inputs[reached]).any()))
             if reached > row and carries:
                 carrying.append((reached, hypothesis))
         furthest = max((reached for reached, _ in carrying), default=0)
@@ -251,18 +251,22 @@ class Follower:
     def _read_otherwise(self, row: int, state: Any, rows: int) -> Iterator[_Hypothesis]:
         """The law had other readings than the log holds, near these, in up to so many rows, and answered them exactly; of as few angles
         as it takes."""
-        for candidates in candidates_for_misread(self._flight, row):
-            found = False
+        lacks = bool(np.isnan(self._flight.angle_rad[row]).any())
+        for differing, candidates in enumerate(candidates_for_misread(self._flight, row), int(not lacks)):
+            found, kind = False, MISREAD if differing else UNLOGGED
             for candidate in candidates:
                 changed, moved = candidate[np.newaxis].astype(self.inputs.dtype), self._law.copied(state)
                 if self._law.run(moved, (0, 1), changed, *self._between(row, row + 1)) < 1:
                     continue
-                yield _Hypothesis(MISREAD, row, row + 1, moved)
+                yield _Hypothesis(kind, row, row + 1, moved)
                 found = self._run(self._law.copied(moved), row + 1, min(row + 2, len(self.inputs))) > row + 1
                 if not found and 1 < rows < len(self.inputs) - row:
                     behind = list(self._read_otherwise(row + 1, moved, rows - 1))
                     found = bool(behind)
-                    yield from (replace(entry, first=row) for entry in behind)
+                    yield from (
+                        replace(entry, first=row, kind=MISREAD if MISREAD in (kind, entry.kind) else kind)
+                        for entry in behind
+                    )
             if found:
                 return
 

@@ -288,25 +288,35 @@ def candidates_for_unmeasured(flight: ReplayedLog, sample: int) -> Sequence[Arra
 
 
 def candidates_for_misread(flight: ReplayedLog, sample: int) -> list[list[Array]]:
-    """What the law may have measured in a sample whose angles the log holds otherwise: counts near these, by how many angles differ.
+    """What the law may have measured in a sample whose angles the log holds otherwise, or lacks: counts near these, by how many of those
+    that it holds differ.
 
     Each candidate is the sample's references, then angles (2 loops,). None is of angles that all moved to where they were a sample
     before: those a law would have kept.
     """
     steps, near = np.array(flight.steps_rad), flight.angle_rad[max(0, sample - 1) : sample + 3]
-    if not steps.all() or sample == 0 or not np.isfinite(near[:2]).all():
+    if not steps.all() or sample == 0:
         return []
-    before, counts = np.round(near[:2] / steps)
+    held = np.isfinite(flight.angle_rad[sample])
+    counts = np.array([_count(column, sample, step) for column, step in zip(flight.angle_rad.T, steps, strict=True)])
     ways = np.round(np.nan_to_num(np.abs(near - near[0])).max(axis=0) / steps)
     reach = np.clip(ways, UNMEASURED_REACH.max(), thresholds.MISREAD_REACH).astype(int)
     grid = np.meshgrid(*[np.arange(-most, most + 1) for most in reach], indexing="ij")
     moves = np.stack(grid, axis=-1).reshape(-1, flight.loops)
-    moves = moves[~np.all((moves == 0) | (counts + moves == before), axis=1)]
     moves = moves[np.argsort(np.abs(moves).sum(axis=1), kind="stable")]
+    moved = (moves != 0) & held
+    is_kept = moved.any(axis=1) & np.all(~moved | (counts + moves == np.round(near[0] / steps)), axis=1)
+    moves, moved = moves[~is_kept], moved[~is_kept]
     product = _in_float64 if flight.counted_in_double else _in_float32
-    angles = np.where(moves == 0, flight.angle_rad[sample], product(counts + moves, steps))
+    angles = np.where((moves == 0) & held, flight.angle_rad[sample], product(counts + moves, steps))
     rows = np.hstack([np.tile(flight.reference_rad[sample], (len(moves), 1)), angles])
-    return [list(rows[(moves != 0).sum(axis=1) == count]) for count in range(1, flight.loops + 1)]
+    return [list(rows[moved.sum(axis=1) == count]) for count in range(int(held.all()), int(held.sum()) + 1)]
+
+
+def _count(angle_rad: Array, sample: int, step_rad: float) -> float:
+    """The count that the log holds of a sample, or the one on the line between those beside it."""
+    finite = np.flatnonzero(np.isfinite(angle_rad))
+    return float(np.round(np.interp(sample, finite, angle_rad[finite]) / step_rad)) if finite.size else 0.0
 
 
 def _references_between(flight: ReplayedLog, block: tuple[int, int]) -> list[Array]:

@@ -257,6 +257,19 @@ def test_a_firmware_that_used_an_older_reading_is_not_cleared_by_the_log(columns
     assert differs(found.record())
 
 
+def test_readings_that_repeat_beside_others_that_the_log_lacks_clear_the_firmware_too() -> None:
+    """Truth: 4 % of the elevation's readings repeat the one before, and 4 % of the azimuth's are empty, some in the same rows."""
+    log, rng = own(), np.random.default_rng(11)
+    y = log.y.copy()
+    kept, lost = (1 + np.flatnonzero(rng.random(len(y) - 1) < 0.04) for _ in range(2))
+    y[kept, 0] = log.y[kept - 1, 0]
+    y[lost, 1] = np.nan
+    assert np.intersect1d(kept, lost).size
+    found = replay_stretches(replace(log, y=y), TABLE)
+    assert found.cause == "reading_not_as_logged"
+    assert "the firmware is cleared" in (found.sentence or "")
+
+
 @pytest.mark.parametrize("share", [0.005, 0.05])
 def test_so_it_does_where_the_law_computes_in_fixed_point(share: float) -> None:
     """Truth: the same in integers; behind a reading that is another all words differ."""
