@@ -44,16 +44,24 @@ def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, flo
     return None
 
 
+def _way_V(logged_V: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far each of the inputs (rows, inputs) goes."""
+    return np.asarray(np.nanmax(logged_V, axis=0) - np.nanmin(logged_V, axis=0))
+
+
 def _followed_within(shop: Workshop, table: ControllerTable, rows: NDArray[np.int64], off_V: float) -> float | None:
     """Within how many volt the law follows the log from the first of the `rows` that tell its state; None where by no bound that a law
-    from rest, which is off by `off_V`, clearly misses."""
+    from rest, which is off by `off_V`, clearly misses, nor where an input that moved rests from there on, as laws are alike then."""
     setup = Setup(table)
     law, inputs, n = ReplayLaw(setup), shop.inputs(setup), len(shop.flight.t_s)
     spans = [(row, min(behind + thresholds.HISTORY + 1, n)) for row, behind in pairwise([*_anew(rows), n])]
     states = [_state(law, inputs, shop.flight, table, row) for row, _ in spans]
     wanted, slack = shop.answers(setup)
+    whole_V, behind_V = (_way_V(shop.flight.logged_V[first:]) for first in (0, rows[0]))
     for bound_V in thresholds.BOUNDS_V:
-        if off_V > thresholds.CLEARLY_OFF * bound_V and all(
+        clear_V = thresholds.CLEARLY_OFF * bound_V
+        shows = off_V > clear_V and bool(np.all((behind_V > clear_V) | (whole_V <= clear_V)))
+        if shows and all(
             law.run(law.copied(state), (row, behind), inputs, wanted, slack + bound_V) == behind
             for state, (row, behind) in zip(states, spans, strict=True)
         ):
