@@ -215,13 +215,15 @@ def _fresh(found: Any) -> list[str]:
         _share(single, lambda j: j["rank"] == 1),
         _share(several, lambda j: j["rank"] == 1),
         _share(outside, lambda j: j["place_right"] and (not j["found"] or j["rank"] == 1)),
+        _share([j for j in severe if j["kind"] != "outside"], lambda j: j["left_out"]),
+        _share([within for j in seen for within in j["within_interval"]], bool),
     ]
 
 
 def test_the_figures_of_three_families_are_those_of_their_scores() -> None:
     found = [result(f"blind_fresh_{name}") for name in ("first", "second", "real")]
     heading = f"|figure|first, {found[0]['cases']}|second, {found[1]['cases']}|real, {found[2]['cases']}|"
-    told = [cells for _, *cells in rows(heading, BLIND)][:6]
+    told = [cells for _, *cells in rows(heading, BLIND)][:8]
     assert told == [list(line) for line in zip(*map(_fresh, found), strict=True)]
 
 
