@@ -6,10 +6,13 @@ Of a reading nothing is kept. A command went on meanwhile, between those beside 
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
+
+Places = NDArray[np.intp]
 
 
 def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
@@ -27,14 +30,11 @@ def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
         thresholds.DEAD_JUMP * float(np.percentile(moves, thresholds.USUAL_MOVE_PERCENT)),
         thresholds.DEAD_JUMP_STEPS * least,
     )
-    place = np.searchsorted(others, np.arange(len(values)))
-    before, after = (np.abs(values[others[np.clip(place - back, 0, others.size - 1)]]) for back in (1, 0))
-    near = np.minimum(before, after)
+    _, before, after = _beside(others, len(values))
+    near = np.minimum(np.abs(values[before]), np.abs(values[after]))
     near[: others[0]] = 0.0
     near[others[-1] :] = 0.0
-    gap_s = (
-        log.t_s[others[np.clip(place, 0, others.size - 1)]] - log.t_s[others[np.clip(place - 1, 0, others.size - 1)]]
-    )
+    gap_s = log.t_s[after] - log.t_s[before]
     near[gap_s > thresholds.DEAD_S] = 0.0  # a stand, which is told with its times
     clear: Rows = zero & (near > leap)
     if not clear.any():
@@ -59,8 +59,7 @@ def zero_input_findings(log: RunLog, name: str, column: str) -> Iterator[Found]:
     others = np.flatnonzero(values != 0.0)
     if others.size in (0, 1, len(values)):
         return
-    place = np.searchsorted(others, np.arange(len(values)))
-    before, after = (others[np.clip(place - back, 0, others.size - 1)] for back in (1, 0))
+    place, before, after = _beside(others, len(values))
     inside: Rows = (values == 0.0) & (place > 0) & (place < others.size)
     near = np.where(
         values[before] * values[after] > 0.0, np.minimum(np.abs(values[before]), np.abs(values[after])), 0.0
@@ -84,6 +83,13 @@ def zero_input_findings(log: RunLog, name: str, column: str) -> Iterator[Found]:
         "what was sent is not written there, and taken as between its neighbours"
     )
     yield Found(Finding("zero_command", name, column, float(at[0]), float(at[-1]), sentence, EXCLUDE, count), unknown)
+
+
+def _beside(others: Places, rows: int) -> tuple[Places, Places, Places]:
+    """Of each row (rows,): how many of the rows `others` lie before it, and the next of them before and behind it, at an end the outermost."""
+    place = np.searchsorted(others, np.arange(rows))
+    before, after = (others[np.clip(place - back, 0, others.size - 1)] for back in (1, 0))
+    return place, before, after
 
 
 def _beyond_what_it_does(moves: Array) -> float:
