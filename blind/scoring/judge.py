@@ -9,8 +9,8 @@ from blind.rigs.bench import FILTERED
 from blind.scoring.results import Answer, Names, RankedAnswer, Unreadable
 
 NOBODY = RankedAnswer(frozenset(), 0.0, {}, {}, ())
-WITHIN_95 = 1.96  # standard deviations
-NEARLY = 0.1  # of a parameter's scale
+WITHIN_95 = 1.96  # standard deviations, of a normal law
+NEARLY = 0.1  # of a parameter's scale: so near, the figure's name says, a size is right
 
 
 @dataclass(frozen=True)

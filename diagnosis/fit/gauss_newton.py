@@ -274,7 +274,7 @@ def unfitted(case: Case, noisy: Hypothesis) -> Fit | None:
 def tempered(case: Case, found: Fit, scale: float) -> Fit:
     """The fit with what is known of its numbers where the likelihood L counts as L^(1 / scale), as no model is exact: with C the prior's,
 
-    A' = (A - C) / scale + C                                                 Miller and Dunson 2019, eq (2.4)
+    A' = (A - C) / scale + C    (Miller and Dunson 2019)
     """
     prior = np.zeros_like(found.information)
     _add_prior(case, found.hypothesis, found.free, prior, np.zeros_like(found.pull))
