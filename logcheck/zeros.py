@@ -86,7 +86,7 @@ def zero_input_findings(log: RunLog, name: str, column: str) -> Iterator[Found]:
 
 
 def _beside(others: Places, rows: int) -> tuple[Places, Places, Places]:
-    """Of each row (rows,): how many of the rows `others` lie before it, and the next of them before and behind it, at an end the outermost."""
+    """Of each row (rows,): how many of the rows `others` lie before it, and the next of them before and behind it, at an end the last."""
     place = np.searchsorted(others, np.arange(rows))
     before, after = (others[np.clip(place - back, 0, others.size - 1)] for back in (1, 0))
     return place, before, after
