@@ -110,11 +110,15 @@ def test_every_make_target_is_explained_by_make_help() -> None:
     assert targets == shown
 
 
+AT_THE_TOP = {".gitignore", "Makefile", "README.md", "mkdocs.yml", "pyproject.toml"}
+
+
 def test_no_generated_or_fetched_file_is_tracked() -> None:
     tracked = _run("git", "ls-files").stdout.split()
     if not tracked:
         pytest.skip("this copy of the project is no git checkout")
     assert not [name for name in tracked if name.endswith((".so", ".elf", ".bin", ".mat", ".pyc"))]
+    assert {name for name in tracked if "/" not in name} == AT_THE_TOP
 
 
 MOST_FILES, LEAST_FILES = 20, 3
