@@ -141,7 +141,10 @@ def test_the_verb_lists_traces_and_speaks_json(tmp_path: Path, capsys: pytest.Ca
     path = tmp_path / "controller.json"
     path.write_text(table_text(designed()[1]))
     assert main(["trace", "--table", str(path)]) == 0
-    assert "elevation_q_1_V_rad[2]" in capsys.readouterr().out
+    c_text = traced("elevation_q_1_V_rad[2]").c_text
+    listed = capsys.readouterr().out
+    assert re.search(rf"elevation_q_1_V_rad\[2\] +{re.escape(c_text)} ", listed)
+    assert f'"{designed()[1].digest}"' in listed
     assert main(["trace", "azimuth_u_ff_V[0]", "--table", str(path)]) == 0
     told = capsys.readouterr().out
     assert "K_T" in told

@@ -1,6 +1,6 @@
 """Trace a constant of the generated C back to fit, poles, operating points and the plant's parameters with their sources.
 
-`twinlaw trace elevation_q_1_V_rad[2]` (LAW_ELEVATION_Q1[2] is the same); without a name it lists every constant.
+`twinlaw trace elevation_q_1_V_rad[2]` (LAW_ELEVATION_Q1[2] is the same); without a name it lists every constant as the C has it.
 """
 
 import argparse
@@ -33,7 +33,7 @@ def run(chosen: argparse.Namespace) -> int:
     table = load_scheduled(chosen.table, "constants that go back to operating points and fits")
     if chosen.name is None:
         known = names(table, chosen.arithmetic)
-        rows = [(constant.name, f"{constant.value:.9g}", constant.unit, constant.made_as) for constant in known]
+        rows = [(constant.name, constant.literal.text, constant.unit, constant.made_as) for constant in known]
         print(json.dumps([row[0] for row in rows]) if chosen.json else console.table(rows))
         return 0
     bound = load_bound(Path(chosen.plant))
