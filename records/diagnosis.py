@@ -1,16 +1,17 @@
 """What a diagnosis found, as diagnosis.json states it (schema diagnosis/1 of CONTRACT.md)."""
 
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from records.errors import BadInput
-from records.model_comparison import Candidate, ModelComparison
+from records.model_comparison import ModelComparison
 from records.quality import Quality, quality_facts
 from records.reasons import Decision, Note
 from records.text import checks
+from records.text.json_record import key_of, plain, read, record_of
 from records.text.reading import read_json
 
 SCHEMA = "diagnosis/1"
@@ -19,7 +20,6 @@ VERDICTS = ("gap", "no gap", "cannot tell")
 FURTHER = ("error_responses", "partly", "comparison", "verdict_reason", "decisions", "note_records")
 QUALITY = "quality"  # a key beside the record: the colour that pages show, made from it
 SHARE_TOLERANCE = 1e-6  # how far shares may sum from 1
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -209,7 +209,7 @@ def diagnosis_text(diagnosis: Diagnosis, quality: Quality | None = None) -> str:
     _check(diagnosis, "diagnosis")
     try:
         coloured = {} if quality is None else {QUALITY: quality_facts(quality)}
-        return json.dumps({"schema": SCHEMA, **_plain(diagnosis), **coloured}, indent=1, allow_nan=False) + "\n"
+        return json.dumps({"schema": SCHEMA, **plain(diagnosis), **coloured}, indent=1, allow_nan=False) + "\n"
     except ValueError as error:
         raise BadInput("number", "diagnosis", str(error), "finite numbers", "write null for what is unknown") from error
 
@@ -223,39 +223,17 @@ def load_diagnosis(path: Path) -> Diagnosis:
 def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
     """A diagnosis from the content of its file; raises BadInput."""
     checks.schema(content, where, SCHEMA)
-    names = [_json_name(field.name) for field in fields(Diagnosis)]
-    checks.keys(content, where, ("schema", *(name for name in names if name not in FURTHER)), (*FURTHER, QUALITY))
-    p = content["false_alarm_probability"]
-    diagnosis = Diagnosis(
-        verdict=checks.text(content["verdict"], f"{where}: verdict"),
-        false_alarm_probability=None if p is None else checks.number(p, f"{where}: false_alarm_probability"),
-        places=_list(PlaceShare, content, "places", where),
-        when=_list(Span, content, "when", where),
-        regions=_list(Region, content, "regions", where),
-        bands=_list(Band, content, "bands", where),
-        error_responses=_list(ErrorResponse, content, "error_responses", where),
-        firmware=_optional(Firmware, content, "firmware", where),
-        effects=_list(Hypothesis, content, "effects", where),
-        unknown=_record(Unknown, content["unknown"], f"{where}: unknown"),
-        found=_texts(content["found"], f"{where}: found"),
-        shrinkage=_optional(Shrinkage, content, "shrinkage", where),
-        next_experiment=None
-        if content["next_experiment"] is None
-        else checks.table(content["next_experiment"], f"{where}: next_experiment"),
-        notes=_texts(content["notes"], f"{where}: notes"),
-        partly=checks.number(content.get("partly", 0.0), f"{where}: partly"),
-        verdict_reason=_or_none(checks.text)(content.get("verdict_reason"), f"{where}: verdict_reason"),
-        decisions=_list(Decision, content, "decisions", where),
-        note_records=_list(Note, content, "note_records", where),
-        comparison=_or_none(comparison_of)(content.get("comparison"), f"{where}: comparison"),
-    )
+    known = {key_of(entry): entry for entry in fields(Diagnosis)}
+    checks.keys(content, where, ("schema", *(key for key in known if key not in FURTHER)), (*FURTHER, QUALITY))
+    given = {known[key].name: read(known[key].type, content[key], f"{where}: {key}") for key in known if key in content}
+    diagnosis = Diagnosis(**given)
     _check(diagnosis, where)
     return diagnosis
 
 
 def comparison_of(value: Any, where: str) -> ModelComparison:
     """A comparison from the content of its file; raises BadInput."""
-    return _record(ModelComparison, value, where)
+    return record_of(ModelComparison, value, where)
 
 
 def _check(diagnosis: Diagnosis, where: str) -> None:
@@ -274,105 +252,3 @@ def _check(diagnosis: Diagnosis, where: str) -> None:
     total = sum(entry.share for entry in diagnosis.places)
     if diagnosis.places and abs(total - 1.0) > SHARE_TOLERANCE:
         raise BadInput("shares of places", where, f"a sum of {total:g}", "a sum of 1", "scale them by their sum")
-
-
-def _plain(value: Any) -> Any:
-    """A record as JSON knows it: mappings, lists, numbers and texts."""
-    if is_dataclass(value):
-        return {_json_name(field.name): _plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, Mapping):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    return value
-
-
-def _json_name(name: str) -> str:
-    """`class_` and `from_` are `class` and `from` in the file, which Python keeps for itself."""
-    return name.removesuffix("_")
-
-
-def _optional(kind: type[T], content: Mapping[str, Any], key: str, where: str) -> T | None:
-    return None if content[key] is None else _record(kind, content[key], f"{where}: {key}")
-
-
-def _list(kind: type[T], content: Mapping[str, Any], key: str, where: str) -> tuple[T, ...]:
-    """Records under a key; none where a key is absent that may be."""
-    entries = content.get(key, [])
-    if not isinstance(entries, list):
-        raise BadInput(key, where, repr(entries)[:60], "a list", "write [] where there is none")
-    return tuple(_record(kind, entry, f"{where}: {key}[{index}]") for index, entry in enumerate(entries))
-
-
-def _record(kind: type[T], entry: Any, where: str) -> T:
-    """A record whose keys are the fields of `kind`, each read as its annotation says; one with a default may be absent."""
-    section = checks.table(entry, where)
-    names = {_json_name(entry.name): entry for entry in fields(kind)}  # type: ignore[arg-type]
-    spare = [
-        key for key, entry in names.items() if entry.default is not MISSING or entry.default_factory is not MISSING
-    ]
-    checks.keys(section, where, [key for key in names if key not in spare], spare)
-    return kind(
-        **{
-            entry.name: _READ[str(entry.type)](section[key], f"{where}.{key}")
-            for key, entry in names.items()
-            if key in section
-        }
-    )
-
-
-def _flag(value: Any, where: str) -> bool:
-    if not isinstance(value, bool):
-        raise BadInput("flag", where, repr(value), "true or false", "write one of these")
-    return value
-
-
-def _texts(value: Any, where: str) -> tuple[str, ...]:
-    if not isinstance(value, list):
-        raise BadInput("list of texts", where, repr(value)[:60], "a list", "write [] where there is none")
-    return tuple(checks.text(entry, f"{where}[{index}]") for index, entry in enumerate(value))
-
-
-def _numbers_by_name(value: Any, where: str) -> Mapping[str, float]:
-    return {name: checks.number(entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
-
-
-def _estimates(value: Any, where: str) -> Mapping[str, Estimate]:
-    return {name: _record(Estimate, entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
-
-
-def _candidates(value: Any, where: str) -> tuple[Candidate, ...]:
-    return _list(Candidate, {"candidates": value}, "candidates", where)
-
-
-def _agreements(value: Any, where: str) -> Mapping[str, Agreement]:
-    return {name: _record(Agreement, entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
-
-
-def _interval(value: Any, where: str) -> tuple[float, float]:
-    low, high = checks.numbers(value, where, 2)
-    return low, high
-
-
-def _or_none(read: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
-    return lambda value, where: None if value is None else read(value, where)
-
-
-_READ: Mapping[str, Callable[[Any, str], Any]] = {
-    str(annotation): read
-    for annotation, read in (
-        (str, checks.text),
-        (float, checks.number),
-        (bool, _flag),
-        (str | None, _or_none(checks.text)),
-        (float | None, _or_none(checks.number)),
-        (tuple[str, ...], _texts),
-        (tuple[float, float] | None, _or_none(_interval)),
-        (Mapping[str, float], _numbers_by_name),
-        (Mapping[str, Any], checks.table),
-        (Mapping[str, Estimate], _estimates),
-        (Mapping[str, Agreement], _agreements),
-        (tuple[Candidate, ...], _candidates),
-        (ClosedLoop | None, _or_none(lambda value, where: _record(ClosedLoop, value, where))),
-    )
-}
