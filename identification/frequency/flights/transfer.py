@@ -11,7 +11,12 @@ passes 1 / (1 + (omega / BANDWIDTH_rad_s)^4). Of white noise of standard deviati
     (1)  sd sqrt(2^0.5 / 16 BANDWIDTH_rad_s^3 T_s),
 
 which is the integral of omega^2 / (1 + (omega / BANDWIDTH_rad_s)^4)^2 over all frequencies. Beyond its ends the signal goes on as the
-parabola through its last readings, over two periods of that bandwidth, whose slope there is as noisy as (1).
+parabola through its last readings, over two periods W = 4 pi / BANDWIDTH_rad_s of it, whose slope there is as noisy as (1). Of a motion
+at omega that slope is off by at most
+
+    (2)  (omega W)^2 / 10,
+
+the parabola that is nearest to a cubic; a shorter one is nearer and noisier, as W^-1.5.
 """
 
 import math
@@ -25,6 +30,7 @@ from identification import thresholds
 
 Array = NDArray[np.float64]
 MOST_BAND = 0.8  # of half the sampling rate: a slower log is not smoothed below that
+PARABOLA_PERIODS = 2.0
 RINGING = 20.0  # time constants of the filter after which its memory is none
 
 
@@ -57,7 +63,7 @@ def smoothed(signal: Array, sample_period_s: float) -> Array:
     """Readings (n, channels) without what is faster than BANDWIDTH_rad_s."""
     share = min(thresholds.BANDWIDTH_rad_s * sample_period_s / math.pi, MOST_BAND)
     memory = math.ceil(RINGING / (share * math.pi))
-    ends = min(max(math.ceil(4.0 / share), 3), signal.shape[0])
+    ends = min(max(math.ceil(PARABOLA_PERIODS * 2.0 / share), 3), signal.shape[0])
     before = _continued(signal[:ends][::-1], memory)[::-1]
     whole = np.concatenate([before, signal, _continued(signal[-ends:], memory)])
     return np.asarray(filtfilt(*butter(2, share), whole, axis=0, padlen=0)[memory:-memory])
@@ -74,6 +80,12 @@ def _continued(readings: Array, rows: int) -> Array:
 def slopes_of(signal: Array, sample_period_s: float) -> Array:
     """Time derivative of smoothed readings (n, channels): of a parabola of fourth degree through five of them."""
     return np.asarray(savgol_filter(signal, 5, 4, deriv=1, delta=sample_period_s, axis=0))
+
+
+def off_at_the_ends(omega_rad_s: float) -> float:
+    """(2): the share by which the first and the last slope of a motion at that frequency may be off."""
+    length_s = PARABOLA_PERIODS * 2.0 * math.pi / thresholds.BANDWIDTH_rad_s
+    return (omega_rad_s * length_s) ** 2 / 10.0
 
 
 def lever_noise_m_s2(omega_sd_rad_s: ArrayLike, r_s_m: ArrayLike, sample_period_s: float) -> Array:

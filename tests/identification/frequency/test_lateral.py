@@ -5,7 +5,13 @@ import tomllib
 import numpy as np
 import pytest
 
-from identification.frequency.flights.transfer import lever_noise_m_s2, to_centre_of_gravity
+from identification.frequency.flights.transfer import (
+    lever_noise_m_s2,
+    off_at_the_ends,
+    slopes_of,
+    smoothed,
+    to_centre_of_gravity,
+)
 from identification.frequency.lateral import check_plant, state_space
 from records.errors import BadInput
 from records.plant import load_plant, parse_plant, plant_text
@@ -93,6 +99,21 @@ def test_a_lever_of_noisy_rates_costs_less_than_it_removes_and_no_more_at_the_en
     assert by_rule == pytest.approx(0.0038, abs=1e-4)
     assert np.std(left[:, 100:300]) == pytest.approx(by_rule, rel=0.05)
     assert np.max(np.std(left, axis=0)) < 2.0 * by_rule
+
+
+@pytest.mark.parametrize("omega_rad_s", [0.5, 1.0, 2.0])
+def test_the_last_slope_in_full_motion_is_off_by_what_is_stated(omega_rad_s):
+    # Truth: a rate that goes as a sine of 1 rad/s amplitude, which ends at every phase; by (2) its last slope is off by up to 2.5 % of a
+    # motion at 1 rad/s and as the square of it; what is found lies within a fifth below.
+    period_s = 0.02
+    t_s = period_s * np.arange(-1000, 1)
+    phases = np.linspace(0.0, np.pi, 37)
+    rates = np.sin(omega_rad_s * t_s[:, None] + phases)
+    last = slopes_of(smoothed(rates, period_s), period_s)[-1]
+    off = np.max(np.abs(last - omega_rad_s * np.cos(phases))) / omega_rad_s
+    stated = off_at_the_ends(omega_rad_s)
+    assert stated == pytest.approx(0.0253 * omega_rad_s**2, rel=0.01)
+    assert 0.8 * stated < off < stated
 
 
 def _angles(t_s):

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from identification import thresholds
+from identification.frequency.flights.transfer import off_at_the_ends
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.models.lateral_record import LateralFlight
 from identification.frequency.quality import frequency_quality
@@ -92,7 +93,8 @@ def _flown(flown: LateralFlight, plots: Mapping[str, str]) -> Section:
         f"The record {flown.name}: what the pilot swept and how the helicopter rolls.",
         f"Then the lateral acceleration, carried from the accelerometer to the centre of gravity: {removed:.2g} m/s^2 rms is taken off. "
         f"The rates are smoothed at {thresholds.BANDWIDTH_rad_s:g} rad/s for it; by their stated noise that adds "
-        f"{flown.noise_m_s2:.2g} m/s^2 rms.",
+        f"{flown.noise_m_s2:.2g} m/s^2 rms. At the record's first and last reading their slope is off by up to "
+        f"{off_at_the_ends(1.0):.1%} of a motion at 1 rad/s, by {off_at_the_ends(2.0):.0%} at 2 rad/s.",
     )
     return Section("A sweep as it was flown (Figs. 2 and 3)", sentences, (), (plots[SWEEP], plots[TRANSFER]))
 
