@@ -55,6 +55,24 @@ FAST_RAD_S = Limit(
     "tank of new-plant, poles from 0.3 rad/s: misfit 3.9 by the band as it is, 0.42 by a ninth of it; heater, from 0.5: sd of the capacity "
     "0.56 and 0.053 %; motor, from 15: sd of K 2 and, five times faster, 10 %",
 )
+POOR_J = Limit(
+    100.0,
+    "cost J",
+    "mean of the pairs: a model that leaves more has not the form of the responses",
+    "Tischler and Remple (2012)",
+)
+COLUMNS_TIMES = Limit(
+    5.0,
+    "times the cost J",
+    "of the plant as stated that it has less once a column is turned or two are exchanged: they are not what they are called",
+    "raptor50, twelve plant files 30 % off: none of its sweeps refused as they are; each with a turned or two exchanged columns by name",
+)
+ROWS_TIMES = Limit(
+    2.0,
+    "times the cost J",
+    "of the matched model that it has less once all commands are moved by rows: they may stand there",
+    "raptor50, one row late or early: 5 times; in its rows: less than 1",
+)
 BANDWIDTH_rad_s = Limit(
     25.0,
     "rad/s",

@@ -12,9 +12,10 @@ from records.text.units import unit_of
 
 
 def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, float]]) -> Iterator[Found]:
-    """Notes on how each input lies to its limits."""
-    for column, shares in saturations(log, limits).items():
-        low, high = limits[column]
+    """Notes on how each input lies to its limits, where it has some."""
+    shares_of = saturations(log, limits)
+    for column, (low, high) in limits.items():
+        shares = shares_of[column]
         u, margin = log.column(column), NEAR_LIMIT * (high - low)
         sides = [(low, shares.lower, u <= low + margin), (high, shares.upper, u >= high - margin)]
         shown = [

@@ -67,18 +67,19 @@ def _note(finding: Finding) -> Note:
 @np.errstate(over="ignore", invalid="ignore")  # numbers beyond all bounds are what is looked for
 def examine(
     logs: Sequence[RunLog],
-    bound: BoundPlant,
+    plant: BoundPlant | PlantFacts,
     *,
     holdout: Sequence[RunLog] = (),
     names: Sequence[str] | None = None,
 ) -> Integrity:
-    """Examine training logs and hold-out logs of one plant; `names` are those of all logs, training first.
+    """Examine training logs and hold-out logs of one plant; `names` are those of all logs, training first. Of a plant of which nothing but
+    its `PlantFacts` is known, no motion is foretold.
 
     Never raises for what stands in a log: what is wrong is a finding, and `demand` refuses.
     """
     everything = [*logs, *holdout]
     names = [f"log {index + 1}" for index in range(len(everything))] if names is None else list(names)
-    facts = plant_facts(bound)
+    bound, facts = (None, plant) if isinstance(plant, PlantFacts) else (plant, plant_facts(plant))
     found: list[list[Found]] = [
         list(_findings(log, name, bound, facts)) for log, name in zip(everything, names, strict=True)
     ]
@@ -110,10 +111,9 @@ def demand(integrity: Integrity, kinds: Collection[str] | None = None) -> None:
         raise BadInput(finding.kind.replace("_", " "), where, finding.sentence, finding.expected, finding.remedy)
 
 
-def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
+def _findings(log: RunLog, name: str, bound: BoundPlant | None, facts: PlantFacts) -> Iterator[Found]:
     """All findings within one log; those that make others meaningless end the list."""
-    expected = log_columns(bound.model)
-    if (log.columns.inputs, log.columns.outputs) != (expected.inputs, expected.outputs):
+    if bound is not None and not _is_of(log, bound):
         yield _other_plant(log, name, bound)
         return
     own = list(timing_findings(log, name, timing(log)))
@@ -130,14 +130,19 @@ def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> I
         yield from own
         return
     begins = beginning((*breaks, *own), len(log.t_s))
-    own += list(plant_findings(log, name, bound, facts))
+    own += [] if bound is None else list(plant_findings(log, name, bound, facts))
     yield from own
-    if not any(entry.finding.severity == REFUSE for entry in own):
+    if bound is not None and not any(entry.finding.severity == REFUSE for entry in own):
         yield from foretold_findings(without(log, own), name, bound, facts, begins)
     yield from input_findings(log, name, facts.limits)
     if log.source is not None and log.source.simulated:
         span = (float(log.t_s[0]), float(log.t_s[-1]))
         yield Found(Finding("simulated", name, None, *span, "its source says that these numbers are simulated"))
+
+
+def _is_of(log: RunLog, bound: BoundPlant) -> bool:
+    expected = log_columns(bound.model)
+    return (log.columns.inputs, log.columns.outputs) == (expected.inputs, expected.outputs)
 
 
 def _other_plant(log: RunLog, name: str, bound: BoundPlant) -> Found:

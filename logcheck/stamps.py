@@ -87,14 +87,19 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
         yield say("too_short", got, REFUSE, f"at least {thresholds.LEAST_ROWS} rows", "record a longer run")
         return
     yield from _order(log, name)
-    if abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
-        apart = f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s"
-        of_so_many = _of_so_many(found, log)
-        if of_so_many and _moves(log.u) > thresholds.THINNED_MOVES:
-            yield say(THINNED, f"{apart}: {of_so_many}, and what was commanded in the others is not known: {_DOUBTFUL}")
-        else:
-            how_far = f": {of_so_many}" if of_so_many else f" ({found.period_error_ppm:+.0f} ppm)"
-            yield say("sample_period", f"{apart}{how_far}; their own times are used")
+    is_off = abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found))
+    apart = f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s"
+    by_number = _step_of_numbers(log)
+    written = by_number if by_number > 1 else _so_many(found, log)
+    if written > 1 and _moves(log.u) > thresholds.THINNED_MOVES:
+        told = f"sequence numbers rise by {by_number} from row to row" if by_number > 1 else apart
+        yield say(
+            THINNED,
+            f"{told}: 1 in {written} was written, and what was commanded in the others is not known: {_DOUBTFUL}",
+        )
+    elif is_off:
+        how_far = f": 1 in {written} was written" if written > 1 else f" ({found.period_error_ppm:+.0f} ppm)"
+        yield say("sample_period", f"{apart}{how_far}; their own times are used")
     if found.jitter_rms_s > thresholds.JITTER_PERIODS * found.period_s:
         yield say(
             "jitter",
@@ -106,11 +111,16 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
 _DOUBTFUL = "whatever is found may be farther off than its interval says"
 
 
-def _of_so_many(found: Timing, log: RunLog) -> str:
-    """That one row was written of so many by the stated period, empty where it is another one."""
+def _so_many(found: Timing, log: RunLog) -> int:
+    """Of how many samples by the stated period one row was written: 1 where all were, or where it is another one."""
     times = found.period_s / log.sample_period_s
     is_whole = round(times) >= 2 and abs(times / round(times) - 1.0) < thresholds.OF_SO_MANY
-    return f"1 in {round(times)} was written" if is_whole else ""
+    return round(times) if is_whole else 1
+
+
+def _step_of_numbers(log: RunLog) -> int:
+    """By how much sequence numbers usually rise from row to row; 1 without any."""
+    return 1 if log.seq is None else int(np.median(np.diff(log.seq)))
 
 
 def _moves(u: Array) -> float:

@@ -1,6 +1,7 @@
 """The controller table that a log names: given, or found beside the log."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -60,7 +61,19 @@ def _other_controller(path: Path, digest: str) -> str | None:
 
 def table_of(log: RunLog, path: Path) -> ControllerTable | None:
     """The table that the log at `path` names, where it lies beside it."""
+    if log.table_digest is None:
+        return None
     return next((table for table in _beside(path) if table.digest == log.table_digest), None)
+
+
+def timed(log: RunLog, path: Path, table: ControllerTable | None = None) -> RunLog:
+    """The log at `path` with the sample period of the table that flew it, `table` or the one beside it, whatever its sidecar states.
+
+    A log of every fourth sample whose sidecar states the time between its rows is told by that.
+    """
+    table = table_of(log, path) if table is None else table
+    is_own = table is not None and table.digest == log.table_digest
+    return log if table is None or not is_own else replace(log, sample_period_s=table.sample_period_s)
 
 
 def _beside(path: Path) -> tuple[ControllerTable, ...]:

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from logcheck.facts import PlantFacts
 from records.errors import BadInput
 from records.log import LogColumns
 from records.plant import Plant
@@ -62,6 +63,12 @@ class StateSpace:
 def log_columns() -> LogColumns:
     """Columns of a flight's log: sticks, the body's rates, the accelerometer's lateral reading where it is mounted."""
     return LogColumns(MODEL, INPUTS, MEASURED, (), ())
+
+
+def lateral_facts(plant: Plant) -> PlantFacts:
+    """What its plant file fixes about its logs; the pitch rate q answers no stick."""
+    moved_by = {name: frozenset(INPUTS if name in OUTPUTS else ()) for name in MEASURED}
+    return PlantFacts(dict(plant.sensors), {}, {}, frozenset(), moved_by)
 
 
 def check_plant(plant: Plant) -> None:

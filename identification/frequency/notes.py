@@ -16,7 +16,6 @@ from records.quality import MISFIT
 from records.text.uncertain import with_sd
 
 Array = NDArray[np.float64]
-POOR_J = 100.0
 SAME_J = 1.01
 MOST_BANDS = 3
 MOST_NAMES = 6
@@ -60,11 +59,11 @@ def doubts(fit: FrequencyFit, pairs: Sequence[Pair]) -> tuple[str, ...]:
     """What is in doubt of the match as a whole: its form, and whether the search has found it."""
     mean = fit.J / sum(pair.points > 0 for pair in pairs)
     poor = (
-        f"the cost J is {mean:.0f} on average over the pairs, above {POOR_J:g}: the model has not the form of these responses",
+        f"the cost J is {mean:.0f} on average over the pairs, above {thresholds.POOR_J:g}: the model has not the form of these responses",
     )
     alone = sum(entry.J <= SAME_J * fit.searches[0].J for entry in fit.searches) == 1 and len(fit.searches) > 1
     lonely = (f"only one of {len(fit.searches)} searches came to this cost J; try other starts with --seed",)
-    return (*(poor if mean > POOR_J else ()), *(lonely if alone else ()))
+    return (*(poor if mean > thresholds.POOR_J else ()), *(lonely if alone else ()))
 
 
 def _reason(fit: FrequencyFit, name: str) -> str:

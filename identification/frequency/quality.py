@@ -22,7 +22,7 @@ def frequency_quality(found: FrequencyIdentification, truth: Truth | None = None
                 for output, share in _holes(record)
             ),
             *told_flags(found.result.estimates, found.fit.at_bound),
-            *(flag(text) for text in doubts(found.fit, found.pairs)),
+            *(flag(text) for text in (*filter(None, [found.doubt]), *doubts(found.fit, found.pairs))),
         )
     )
 

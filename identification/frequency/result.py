@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from identification.fit.belief import Belief
 from identification.frequency.match.fit import FrequencyFit
-from identification.frequency.models.linear_model import held_response
 from identification.frequency.models.linear_run import linear_run
 from identification.frequency.notes import notes_on
 from identification.frequency.pairs import Pair, pairs_of
 from identification.frequency.responses.record import Record
 from identification.results.facts import facts
+from identification.results.notes import bound_warning
 from identification.results.result import Identification, identification
 from records.plant import Plant
 
@@ -49,7 +49,7 @@ class FrequencyIdentification:
     """Estimates and plant (`result`), the fit behind them, its pairs, checks in time.
 
     theta and covariance are as plant.toml holds them: what the data do not tell is as the plant file had it. T (f, outputs, inputs) is
-    the response at theta, T_stated that of the plant file as it was.
+    the response at theta, T_stated that of the plant file as it was. `doubt` is what its logs leave in doubt of all of it, in one sentence.
     """
 
     result: Identification
@@ -61,6 +61,12 @@ class FrequencyIdentification:
     pairs: tuple[Pair, ...]
     checks: tuple[TimeCheck, ...]
     notes: tuple[str, ...]
+    doubt: str = ""
+
+    @property
+    def warning(self) -> str:
+        """What stands before everything else; empty where there is nothing."""
+        return "; ".join(filter(None, (bound_warning(self.fit.at_bound), self.doubt)))
 
 
 def frequency_identification(
@@ -70,17 +76,11 @@ def frequency_identification(
     begun = dict(zip(fit.model.names, fit.searches[0].start.tolist(), strict=True))
     result = identification(plant, (), Belief(fit.model.names, fit.theta, fit.covariance), begun=begun, signs=signs)
     theta = np.array([entry.value for entry in result.estimates])
-    T, T_stated = _response(fit, theta), _response(fit, fit.model.start)
+    T, T_stated = fit.response(theta), fit.response(fit.model.start)
     pairs = tuple(pairs_of(fit, T, T_stated))
     checks = tuple(time_check(plant, fit, theta, record) for record in holdout)
     notes = notes_on(result.estimates, fit, pairs)
     return FrequencyIdentification(result, fit, theta, _covariance(result, fit), T, T_stated, pairs, checks, notes)
-
-
-def _response(fit: FrequencyFit, theta: Array) -> Complex:
-    of = fit.model.matrices(theta)
-    assert of is not None
-    return held_response(of, fit.responses.omega_rad_s, fit.records[0].period_s)
 
 
 def _covariance(result: Identification, fit: FrequencyFit) -> Array:

@@ -42,6 +42,13 @@ def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
         "0.02 s apart, not 0.01 s: 1 in 2 was written, and what was commanded in the others is not known"
         in found.sentence
     )
+    # Truth: the same rows of a log whose sidecar states their 20 ms, and whose board counted every sample.
+    (numbered,) = [
+        entry
+        for entry in examined(replace(thinned, sample_period_s=0.02, seq=2 * np.arange(2001))).findings
+        if entry.kind in DOUBTS
+    ]
+    assert "sequence numbers rise by 2 from row to row: 1 in 2 was written" in numbered.sentence
     slow = replace(
         thinned, u=np.repeat(log.u[::50], 50, axis=0)[: len(log.u)]
     )  # an input that stands was known between them

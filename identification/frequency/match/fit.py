@@ -11,6 +11,7 @@ from identification.frequency.match.band import band_of, window_lengths_s
 from identification.frequency.match.cost import N_OMEGA, Target, residual, target, with_response
 from identification.frequency.match.intervals import covariance, slopes
 from identification.frequency.match.secant import Found, Residual, restarted, secant_search
+from identification.frequency.match.wiring import demand_wiring
 from identification.frequency.models.linear_model import LinearModel, held_response
 from identification.frequency.models.linear_run import linear_run
 from identification.frequency.responses.conditioned import Responses, frequency_responses, replaced, responses_with
@@ -55,6 +56,18 @@ class FrequencyFit:
         """Standard deviations of theta."""
         return np.asarray(np.sqrt(np.diag(self.covariance)))
 
+    def response(self, theta: Array) -> Complex:
+        """T (f, outputs, inputs) of the model at a theta at which it has one."""
+        T = _Work(self.model, self.records, self.responses).T(theta)
+        assert T is not None
+        return T
+
+    def matched_cost(self, points: Target) -> float:
+        """J of the model matched with other `points`, searched from theta on."""
+        work = _Work(self.model, self.records, self.responses)
+        found = secant_search(work.mismatch(points), self.theta, work.size)
+        return np.inf if found is None else found.J
+
 
 def match(
     model: LinearModel,
@@ -69,7 +82,7 @@ def match(
 
     The search begins at four points drawn by `seed` from a normal distribution of the model's spread and, `from_start`, at its own start;
     `told` hears of better parameters as soon as there are any. Raises BadInput for records too short for the band, a band that is none,
-    inputs that cannot be told apart, or coherence that is too low everywhere.
+    inputs that cannot be told apart, coherence that is too low everywhere, or columns that are not what they are called.
     """
     swept = with_instruments(records)
     low, high = band_of(swept, band_rad_s)
@@ -82,10 +95,12 @@ def match(
             "coherence", ", ".join(record.name for record in records), f"at most {best:.2f} from {low:.3g} to {high:.3g} rad/s",
             "0.6 or more over a part of the band", "sweep with more amplitude, or longer, or over another band",
         )  # fmt: skip
-    size = np.maximum(np.abs(model.start), np.maximum(model.spread, 1e-12))
-    work = _Work(model, swept, measured, size)
+    work = _Work(model, swept, measured)
+    T_stated = work.T(model.start)
+    if T_stated is not None:
+        demand_wiring(model, T_stated, measured, [record.name for record in records])
     mismatch = _watched(work.mismatch(points), by_name(model.names, told))
-    searches = restarted(mismatch, _starts(model, seed, from_start), size)
+    searches = restarted(mismatch, _starts(model, seed, from_start), work.size)
     if not searches:
         raise BadInput("start", "frequency search", "no response there", "a model that has one", "mend the plant file")
     return _corrected(work, points, searches)
@@ -93,12 +108,16 @@ def match(
 
 @dataclass(frozen=True, eq=False)
 class _Work:
-    """What all steps of a match share: `measured` responses of the records, and a typical `size` of each parameter."""
+    """What all steps of a match share: `measured` responses of the records."""
 
     model: LinearModel
     records: tuple[Record, ...]
     measured: Responses
-    size: Array
+
+    @property
+    def size(self) -> Array:
+        """A typical size of each parameter."""
+        return np.asarray(np.maximum(np.abs(self.model.start), np.maximum(self.model.spread, 1e-12)))
 
     def T(self, theta: Array) -> Complex | None:
         """The model's responses as the records' sampling holds them; None where the model has none."""

@@ -1,10 +1,15 @@
 """The verbs `sweep` and `identify --method frequency`: files in, files out, one line for what is wrong."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+from identification.frequency.lateral import log_columns
 from identification.frequency.match import fit
+from records.log import load_log, save_log
 from records.plant import load_plant
 from tests.plants import PLANTS
 from tests.soak import SOAK
@@ -67,6 +72,89 @@ def test_flights_become_a_plant_file_a_report_and_json(flown, monkeypatch, tmp_p
     assert {path.name for path in tmp_path.glob("*.svg")} == {
         "fig-5-p_rad_s.svg", "fig-5-r_rad_s.svg", "fig-5-a_y_m_s2.svg", "fig-6-doublets.svg", "fig-2.svg", "fig-3.svg",
     }  # fmt: skip
+
+
+@pytest.fixture
+def faulty(flown, monkeypatch, tmp_path):
+    """Both sweeps with a change to each log, identified from the file's own start."""
+    monkeypatch.setattr(fit, "RESTARTS", 0)
+
+    def identified(change):
+        for path in swept(flown):
+            save_log(tmp_path / Path(path).name, change(load_log(Path(path), log_columns())))
+        return main(
+            [*FREQUENCY, "--out", str(tmp_path / "out"), "--json", "--band-rad-s", "0.4", "12", *swept(tmp_path)]
+        )
+
+    return identified
+
+
+def flags_told(capsys):
+    return [look["of"] for look in json.loads(capsys.readouterr().out)["quality"]["looked_at"] if look["value"] is None]
+
+
+def with_reading(log, name, values):
+    y = log.y.copy()
+    y[:, log.columns.outputs.index(name)] = values
+    return replace(log, y=y)
+
+
+def with_zeros(log):
+    lost = np.random.default_rng(1).random(len(log.t_s)) < 0.015
+    return with_reading(log, "p_rad_s", np.where(lost, 0.0, log.column("p_rad_s")))
+
+
+def standing(log):
+    stands = (log.t_s >= 40.0) & (log.t_s < 41.0)
+    return with_reading(log, "p_rad_s", np.where(stands, log.column("p_rad_s")[2000], log.column("p_rad_s")))
+
+
+def with_rows(log, kept):
+    return replace(log, t_s=log.t_s[kept], u=log.u[kept], y=log.y[kept])
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (with_zeros, "p_rad_s reads 0 in"),
+        (standing, "p_rad_s stands at"),
+        (lambda log: with_rows(log, (log.t_s < 70.0) | (log.t_s > 71.0)), "no rows from 69.98 s to 71.02 s: what follows is used"),
+    ],
+)  # fmt: skip
+def test_faults_of_a_helicopters_logs_are_told_and_move_no_parameter(faulty, capsys, change, said):
+    # Truth: L_lat and N_ped of raptor50, which these logs show within 3 %; the fault is the log's.
+    assert faulty(change) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert any(said in note for note in told["notes"])
+    true = load_plant(PLANTS / "raptor50.toml").parameters
+    found = {entry["name"]: entry["value"] for entry in told["estimates"]}
+    for name in ("L_lat", "N_ped"):
+        assert found[name] == pytest.approx(true[name].value, rel=0.05)
+
+
+def test_rows_of_which_one_in_four_was_written_are_a_flag_of_a_match_too(faulty, capsys):
+    assert faulty(lambda log: with_rows(log, slice(None, None, 4))) == 0
+    assert any("the rows are 0.08 s apart, not 0.02 s: 1 in 4 was written" in flag for flag in flags_told(capsys))
+
+
+def test_a_helicopters_commands_in_rows_of_another_time_are_told_with_the_row(faulty, capsys):
+    assert faulty(lambda log: replace(log, u=np.vstack([log.u[:1], log.u[:-1]]))) == 0
+    assert any(flag.startswith("commands perhaps 1 row late: moved so, the cost J is ") for flag in flags_told(capsys))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda log: replace(log, u=log.u * [1.0, -1.0]), "delta_ped with its sign turned"),
+        (lambda log: replace(log, u=log.u[:, ::-1]), "delta_lat and delta_ped in each other's place"),
+        (lambda log: replace(log, y=log.y[:, [2, 1, 0, 3]]), "p_rad_s and r_rad_s in each other's place"),
+        (lambda log: replace(log, y=log.y * [1.0, 1.0, -1.0, 1.0]), "r_rad_s with its sign turned"),
+    ],
+)  # fmt: skip
+def test_a_helicopters_columns_that_are_not_what_they_are_called_are_refused_by_name(faulty, capsys, change, said):
+    assert faulty(change) == 2
+    refused = json.loads(capsys.readouterr().out)
+    assert refused["got"].startswith(f"{said}: read so, the cost J")
 
 
 def test_an_interrupted_match_leaves_the_best_so_far(monkeypatch, flown, tmp_path, capsys):

@@ -9,7 +9,7 @@ import pytest
 from records.errors import BadInput
 from records.log import RunLog, save_log
 from tests.law_tables import ce150_table
-from tests.replay.firmware_flights import default_flight, own, plant
+from tests.replay.firmware_flights import default_flight, own, plant, rows_of
 from tests.soak import sampled
 from twinlaw.workflows.chain.verifying import recorded_replay
 
@@ -33,6 +33,16 @@ def test_a_last_row_that_was_written_in_part_is_told_and_the_others_are_compared
     assert replay.sent is not None
     assert len(replay.sent) == len(own().t_s) - 1
     assert said[0].startswith(f"own.csv: line {len(own().t_s) + 1}, the last, was not written to its end")
+
+
+def test_every_fourth_row_is_not_laid_on_the_firmware_whatever_period_the_sidecar_states(tmp_path: Path) -> None:
+    """Truth: the flight of the table's own law at 10 ms; the sidecar states the 40 ms of the rows that were kept."""
+    log = rows_of(own(), np.arange(len(own().t_s)) % 4 == 0)
+    save_log(tmp_path / "fourth.csv", replace(log, sample_period_s=0.04))
+    replay, said = recorded_replay(tmp_path / "fourth.csv", ce150_table(), plant())
+    assert replay.sent is None
+    assert said[0].startswith("fourth.csv: the log holds ")
+    assert "samples; the law's state between them cannot be known" in said[0]
 
 
 def test_a_log_whose_columns_are_wrong_is_refused_and_not_laid_on_the_firmware(tmp_path: Path) -> None:

@@ -46,7 +46,8 @@ def frequency_page(
     ]
     return Page(
         title=f"{found.result.plant.name}: identified in the frequency domain",
-        verdict=f"{told} of {len(estimates)} parameters identified; cost J = {cost_text(found.fit.J)}; {remarked(len(found.notes))}.",
+        verdict=f"{found.warning}. " * bool(found.warning)
+        + f"{told} of {len(estimates)} parameters identified; cost J = {cost_text(found.fit.J)}; {remarked(len(found.notes))}.",
         colour=quality.colour,
         why=quality_sentence(quality),
         facts=(("Equations", found.result.plant.model),),

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from identification.fit.problem import Told
+from identification.frequency.late_rows import rows_in_doubt
 from identification.frequency.lateral import MODEL as LATERAL
-from identification.frequency.lateral import UNITS, check_plant, log_columns
+from identification.frequency.lateral import UNITS, check_plant, lateral_facts, log_columns
 from identification.frequency.match.fit import match
 from identification.frequency.models.lateral_record import LateralFlight, lateral_flight, lateral_model, lateral_records
 from identification.frequency.models.linear_model import LinearModel, operating_point_model
@@ -20,7 +21,6 @@ from identification.frequency.quality import frequency_quality
 from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
 from identification.frequency.truth import Truth, truth_of
-from identification.results.notes import bound_warning
 from identification.results.result import signs_of
 from identification.runs.log_run import demand_equations_alone
 from identification.runs.rows import trimmed
@@ -30,6 +30,7 @@ from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log
 from records.plant import Plant, load_plant, save_plant
 from records.quality import Quality, quality_facts
+from replay.table import timed
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns as plant_columns
 from twinlaw.cli import console, options
@@ -113,8 +114,12 @@ def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, 
         )
     names = _lateral_names(chosen.free, plant)
     model = lateral_model(plant, names)
-    logs, held = _read(chosen, holdout, log_columns())
+    inputs = looked_at(Inputs((), *_read(chosen, holdout, log_columns())), lateral_facts(plant))
+    logs, held = inputs.logs, inputs.holdout
     found = _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant), told)
+    with console.stage("asking whether commands stand in the rows of their time"):
+        doubt = "; ".join(filter(None, [inputs.doubt, rows_in_doubt(found.fit)]))
+    found = _with_doubts(found, replace(inputs, doubt=doubt))
     name = max(logs, key=lambda name: len(logs[name].t_s))  # a sweep takes longer than what is flown beside it
     truth = None if true is None else truth_of(true, lateral_model(true, model.names), found.fit)
     return Done(found, truth, lateral_flight(logs[name], name, plant))
@@ -148,9 +153,14 @@ def _operating_point(
     names = free_names(bound, chosen.free)
     model, signs = operating_point_model(bound, names, means, limits), signs_of(bound.model)
     found = _matched(chosen, bound.plant, model, records, others, told, signs)
-    found = replace(found, notes=(*filter(None, [inputs.doubt]), *inputs.notes, *found.notes))
+    found = _with_doubts(found, inputs)
     truth = None if true is None else truth_of(true, operating_point_model(bind(true), names, means), found.fit)
     return Done(found, truth)
+
+
+def _with_doubts(found: FrequencyIdentification, inputs: Inputs) -> FrequencyIdentification:
+    """What was found with what is odd in its logs."""
+    return replace(found, notes=(*inputs.notes, *found.notes), doubt=inputs.doubt)
 
 
 def _matched(
@@ -186,7 +196,7 @@ def _log(path: Path, columns: LogColumns) -> RunLog:
         got = "a folder" if path.is_dir() else "not a run log"
         remedy = "name them one by one; experiments have no frequency method"
         raise BadInput("FILES", str(path), got, "run logs, NAME.csv", remedy)
-    log = load_log(path, columns)
+    log = timed(load_log(path, columns), path)
     if log.locked:
         raise BadInput(
             "locked", str(path), ", ".join(log.locked), "all axes free", "give records in which no axis is held"
@@ -206,9 +216,8 @@ def _draw(done: Done, out: Path) -> None:
 def _tell(chosen: argparse.Namespace, done: Done) -> None:
     found, truth = done.found, done.truth
     known = None if truth is None else truth.values
-    warning = bound_warning(found.fit.at_bound)
-    if warning:
-        print(f"{warning}\n")
+    if found.warning:
+        print(f"{found.warning}\n")
     print(console.table(estimate_rows(found.result.estimates, found.fit.at_bound, known), estimate_heading(known)))
     print("\n" + console.table(pair_rows(found, truth), pair_heading(truth)))
     if found.checks:

@@ -10,6 +10,7 @@ from identification.runs.rows import without_readings
 from identification.stages.setup import check_setup
 from identification.stages.staged import in_order
 from logcheck.breaks import unbroken
+from logcheck.facts import PlantFacts
 from logcheck.finding import EXCLUDE, Finding
 from logcheck.integrity import LogIntegrity, as_read, demand, examine
 from records.errors import BadInput
@@ -21,6 +22,7 @@ from records.plant import coefficient_names
 from records.reasons import DOUBTS, Note
 from records.text import checks
 from records.text.reading import read_toml
+from replay.table import timed
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from twinlaw.cli import options
@@ -66,7 +68,7 @@ def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlan
     return Inputs(in_order(experiments), fitted, kept)
 
 
-def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
+def looked_at(inputs: Inputs, plant: BoundPlant | PlantFacts) -> Inputs:
     """The inputs without readings that cannot be used, logs by their stretches, and one sentence for each thing that is odd in a log.
 
     Raises BadInput for what makes a log worthless (a unit slip, no motion, nothing measured).
@@ -74,7 +76,7 @@ def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
     if not inputs.logs and not inputs.holdout:
         return inputs
     everything = {**inputs.logs, **inputs.holdout}
-    found = examine(list(inputs.logs.values()), bound, holdout=list(inputs.holdout.values()), names=list(everything))
+    found = examine(list(inputs.logs.values()), plant, holdout=list(inputs.holdout.values()), names=list(everything))
     demand(found)
     usable = {entry.name: _usable(everything[entry.name], entry, found.findings) for entry in found.logs}
     begins = {entry.name: entry.begins for entry in found.logs}
@@ -109,7 +111,7 @@ def _usable(log: RunLog, looked: LogIntegrity, findings: Sequence[Finding]) -> R
 
 
 def _log(path: Path, bound: BoundPlant) -> RunLog:
-    return load_log(path.with_suffix(".csv"), log_columns(bound.model))
+    return timed(load_log(path.with_suffix(".csv"), log_columns(bound.model)), path)
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
