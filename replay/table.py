@@ -66,7 +66,7 @@ def table_of(log: RunLog, path: Path) -> ControllerTable | None:
     return next((table for table in _beside(path) if table.digest == log.table_digest), None)
 
 
-def timed(log: RunLog, path: Path, table: ControllerTable | None = None) -> RunLog:
+def timed_by_table(log: RunLog, path: Path, table: ControllerTable | None = None) -> RunLog:
     """The log at `path` with the sample period of the table that flew it, `table` or the one beside it, whatever its sidecar states.
 
     A log of every fourth sample whose sidecar states the time between its rows is told by that.

@@ -10,7 +10,7 @@ from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import load_log, plant_of_log
 from records.protocol import protocol_of
-from replay.table import timed
+from replay.table import timed_by_table
 from rig.emulator.serial_port import EmulatedSerial
 from rig.flight.live import LiveFlight, LoopFlight, time_of
 from rig.flight.live_flying import EmulatedRig, FlyingFlight, RealRig
@@ -56,7 +56,7 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
         plant_of_log(Path(asked.port))  # a log that is not there is told before a plant file that is only the default
     bound = load_bound(asked.plant)
     if is_log(asked.port):
-        log = timed(load_log(Path(asked.port), log_columns(bound.model)), Path(asked.port))
+        log = timed_by_table(load_log(Path(asked.port), log_columns(bound.model)), Path(asked.port))
         looked = examine([log], without_effects(bound), names=[Path(asked.port).stem])
         demand(looked, OTHER_NUMBERS)
         with stage("asking whether the columns are what they are called"):

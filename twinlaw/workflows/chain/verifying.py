@@ -21,7 +21,7 @@ from replay.firmware import CLEARED, INPUT_UNKNOWN, FirmwareReplay, demand_causa
 from replay.flight import has_replayable_columns
 from replay.search import IN_FLIGHT
 from replay.stretches import replay_stretches
-from replay.table import timed
+from replay.table import timed_by_table
 from replay.thresholds import MOST_UNREAD
 from rig.emulator.board import EmulatedBoard
 from rig.flight.core_law import CoreLaw
@@ -177,7 +177,7 @@ def recorded_replay(
     """A run log of any known plant, to be replayed in an arithmetic, and what is said of it: a last row that was written in part, what
     it lacks to be compared bit by bit, or what explains that it differs; raises BadInput.
     """
-    log = timed(load_known_log(path, bound), path, table)
+    log = timed_by_table(load_known_log(path, bound), path, table)
     replay, said = _compared(log, replay_of(log, table, path, arithmetic), table, bound, path)
     half = None if log.half_row is None else f"{path.name}: {log.half_row.told}"
     return replay, tuple(filter(None, (half, said)))

@@ -17,7 +17,7 @@ from records.plant import load_plant
 from records.reasons import Note
 from records.table import ControllerTable
 from replay.firmware import INPUT_UNKNOWN, FirmwareReplay, demand_causal
-from replay.table import replay_log, table_of, timed
+from replay.table import replay_log, table_of, timed_by_table
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
@@ -40,7 +40,7 @@ def material_of(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]
 
 def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) -> Material:
     columns = log_columns(bound.model)
-    read = [timed(load_log(path, columns), path) for path in (*logs, *holdout)]
+    read = [timed_by_table(load_log(path, columns), path) for path in (*logs, *holdout)]
     split = len(logs)
     names = [path.stem for path in (*logs, *holdout)]
     if len(set(names[split:])) != len(names[split:]):

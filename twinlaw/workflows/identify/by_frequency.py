@@ -30,7 +30,7 @@ from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log
 from records.plant import Plant, load_plant, save_plant
 from records.quality import Quality, quality_facts
-from replay.table import timed
+from replay.table import timed_by_table
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns as plant_columns
 from twinlaw.cli import console, options
@@ -196,7 +196,7 @@ def _log(path: Path, columns: LogColumns) -> RunLog:
         got = "a folder" if path.is_dir() else "not a run log"
         remedy = "name them one by one; experiments have no frequency method"
         raise BadInput("FILES", str(path), got, "run logs, NAME.csv", remedy)
-    log = timed(load_log(path, columns), path)
+    log = timed_by_table(load_log(path, columns), path)
     if log.locked:
         raise BadInput(
             "locked", str(path), ", ".join(log.locked), "all axes free", "give records in which no axis is held"

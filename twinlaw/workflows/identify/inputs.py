@@ -22,7 +22,7 @@ from records.plant import coefficient_names
 from records.reasons import DOUBTS, Note
 from records.text import checks
 from records.text.reading import read_toml
-from replay.table import timed
+from replay.table import timed_by_table
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from twinlaw.cli import options
@@ -111,7 +111,7 @@ def _usable(log: RunLog, looked: LogIntegrity, findings: Sequence[Finding]) -> R
 
 
 def _log(path: Path, bound: BoundPlant) -> RunLog:
-    return timed(load_log(path.with_suffix(".csv"), log_columns(bound.model)), path)
+    return timed_by_table(load_log(path.with_suffix(".csv"), log_columns(bound.model)), path)
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
