@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -77,14 +78,39 @@ class ErrorResponse:
     coherence: float
 
 
+class LiesIn(StrEnum):
+    """Where that lies in which a log and the controller's own code run again differ."""
+
+    FIRMWARE = "firmware"
+    LOG = "log"  # in what it lacks, or holds twice or rounded: the firmware did as its table says
+    COLUMNS = "columns"  # the plant may have been given other inputs than the log holds
+    UNSEEN = "unseen"  # in how the code was built, or in what was before the log, or behind rows that it lacks
+    UNEXPLAINED = "unexplained"
+
+
 @dataclass(frozen=True)
 class Firmware:
-    """The controller's own code run again on the log; `cause` is one sentence, None where nothing differs."""
+    """The controller's own code run again on the log; `cause` is one sentence behind its `names`, None where nothing differs.
+
+    `lies_in` is one of LiesIn, None where nothing differs or no code was run again.
+    """
 
     replayed: bool
     bit_exact: bool
     first_difference_s: float | None
     cause: str | None
+    names: tuple[str, ...] = ()
+    lies_in: str | None = None
+
+    @property
+    def differs(self) -> bool:
+        """Whether the firmware, or what the log holds of its commands, is not as its table says."""
+        return self.lies_in not in (None, LiesIn.LOG, LiesIn.UNSEEN)
+
+    @property
+    def sentence(self) -> str:
+        """The cause without its names for machines."""
+        return (self.cause or "").removeprefix(f"{' + '.join(self.names)}: ")
 
 
 @dataclass(frozen=True)

@@ -14,18 +14,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from records.diagnosis import Firmware
+from records.diagnosis import Firmware, LiesIn
 from records.errors import BadInput
 from records.log import DOUBLE, RunLog
 from records.table import ControllerTable
 from records.text.units import units_of
 from replay.arithmetic import FIXED, Replayed, misread_in_fixed, replayed, replayed_in_fixed
+from replay.columns import OF_THE_COLUMNS
 from replay.events import MISREAD, UNLOGGED
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
 from replay.law import FLOAT32, FLOAT64
+from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
 from replay.printed import agrees_as_printed
 from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channel_cause, explain, other_readings
-from replay.variants import EARLY_OUTPUT
+from replay.variants import EARLY_OUTPUT, LATE_OUTPUT
 
 NOT_FOUND = "not_found"
 INPUT_UNKNOWN = "input_not_logged"
@@ -38,6 +40,8 @@ ROUNDING_V = 1e-3
 BEHIND_LIMIT = 2  # rows off the limits after which what they did to the law's state shows in its answer
 # What is the log's doing alone: but for what it lacks, or holds twice, the firmware did as its table says.
 CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, MISREAD, INPUT_UNKNOWN, IN_DOUBLE)
+UNSEEN = ("begins_in_flight", "fused_multiply_add")
+COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE, ANGLE_LOGGED_LATE, LATE_OUTPUT)
 NINE_DIGITS = "print nine digits, which hold all of a float32"
 ANGLES_ROUNDED = f"the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees: {NINE_DIGITS}"
 
@@ -58,7 +62,8 @@ class FirmwareReplay:
     """What running the firmware again showed.
 
     `cause` is the machine name ("stale_sample", "stale_sample + dropped_frame", "not_found"), None where nothing differs;
-    `sentence` says it for a person; `alternatives` are other causes that these data cannot tell from it.
+    `sentence` says it for a person; `alternatives` are other causes that these data cannot tell from it. `behind_missing` is a
+    difference behind rows that the log lacks.
     """
 
     replayed: bool
@@ -69,11 +74,24 @@ class FirmwareReplay:
     residuals: tuple[Residual, ...] = ()
     incidents: tuple[tuple[str, float], ...] = ()
     alternatives: tuple[str, ...] = ()
+    behind_missing: bool = False
 
     def record(self) -> Firmware:
         """The record of diagnosis.json."""
         cause = None if self.cause is None else f"{self.cause}: {self.sentence}"
-        return Firmware(self.replayed, self.bit_exact, self.first_difference_s, cause)
+        names = () if self.cause is None else tuple(self.cause.split(" + "))
+        return Firmware(self.replayed, self.bit_exact, self.first_difference_s, cause, names, self._lies_in(names))
+
+    def _lies_in(self, names: tuple[str, ...]) -> LiesIn | None:
+        if self.bit_exact or not self.replayed:
+            return None
+        if self.cause in CLEARED:
+            return LiesIn.LOG
+        if self.cause in UNSEEN or self.behind_missing:
+            return LiesIn.UNSEEN
+        if self.cause == NOT_FOUND:
+            return LiesIn.UNEXPLAINED
+        return LiesIn.COLUMNS if names[0] in COLUMNS else LiesIn.FIRMWARE
 
 
 def demand_causal(path: Path, replay: FirmwareReplay) -> None:
@@ -183,9 +201,10 @@ def _in_fixed_point(
         )
         incidents = tuple((MISREAD, float(flight.t_s[row])) for row in misread)
         return FirmwareReplay(True, False, at_s, MISREAD, sentence, residuals, incidents)
-    behind = " behind rows that the log lacks" if any(flight.t_s[first] < at_s for first, _ in flight.missing) else ""
-    sentence = f"{IN_FIXED_POINT}, until {at_s:.2f} s{behind}; in fixed point no other law is tried"
-    return FirmwareReplay(True, False, at_s, NOT_FOUND, sentence, residuals)
+    behind = any(flight.t_s[first] < at_s for first, _ in flight.missing)
+    where = " behind rows that the log lacks" if behind else ""
+    sentence = f"{IN_FIXED_POINT}, until {at_s:.2f} s{where}; in fixed point no other law is tried"
+    return FirmwareReplay(True, False, at_s, NOT_FOUND, sentence, residuals, behind_missing=behind)
 
 
 def _behind_fixed(

@@ -30,7 +30,6 @@ from tests.replay.firmware_flights import (
     rows_of,
     stale,
 )
-from twinlaw.pages.diagnose.firmware import differs
 from verification.host_law import host_law
 
 TABLE = ce150_table()
@@ -124,9 +123,9 @@ def test_a_law_that_flew_in_double_precision_by_its_log_is_run_again_in_it() -> 
     assert log.arithmetic == "float64"
     found = replay_stretches(log, TABLE)
     assert (found.first_difference_s, found.cause) == (None, "flown_in_double")
-    assert not differs(found.record())
+    assert not found.record().differs
     unsaid = replay_stretches(replace(log, arithmetic=None), TABLE)  # a firmware that computes so is not its table's
-    assert (unsaid.cause, differs(unsaid.record())) == ("float64", True)
+    assert (unsaid.cause, unsaid.record().differs) == ("float64", True)
 
 
 def test_what_else_is_amiss_with_a_flight_in_double_precision_is_still_told() -> None:
@@ -175,7 +174,7 @@ def test_a_sensor_that_stands_in_the_log_alone_is_told_with_its_times_and_nobody
     assert found.cause == "missing_rows"
     assert "psi_rad stands from 25" in (found.sentence or "")
     assert "psi_rad stands" in (found.sentence or "")
-    assert not differs(found.record())
+    assert not found.record().differs
 
 
 def test_a_firmware_that_went_wrong_in_a_hold_is_not_cleared_by_it() -> None:
@@ -185,7 +184,7 @@ def test_a_firmware_that_went_wrong_in_a_hold_is_not_cleared_by_it() -> None:
     u[2500:, 0] += np.random.default_rng(4).normal(0.0, 0.01, len(u) - 2500)
     found = replay_stretches(replace(log, u=u), TABLE)
     assert found.cause == "not_found"
-    assert differs(found.record())
+    assert found.record().differs
 
 
 @pytest.mark.parametrize("lost", ["angles", "reference", "an angle, and the other stands"])
@@ -213,7 +212,7 @@ def test_a_firmware_at_fault_before_readings_are_missing_to_the_end_is_found() -
     u, y = log.u.copy(), log.y.copy()
     u[500] = u[499]
     y[1500:] = np.nan
-    assert differs(replay_stretches(replace(log, u=u, y=y), TABLE).record())
+    assert replay_stretches(replace(log, u=u, y=y), TABLE).record().differs
 
 
 def test_a_log_cut_where_the_law_rested_begins_in_flight() -> None:
@@ -239,7 +238,7 @@ def test_a_log_that_repeats_single_readings_of_a_slow_axis_clears_the_firmware(s
     found = replay_stretches(replace(log, y=y), TABLE)
     rows = moved[kept].sum()
     assert (found.bit_exact, found.cause) == (False, "reading_not_as_logged")
-    assert not differs(found.record())
+    assert not found.record().differs
     said = f"in {rows} rows" if rows > 1 else "in a row"
     assert f"the log holds another reading than the firmware had {said}" in (found.sentence or "")
 
@@ -254,7 +253,7 @@ def test_a_firmware_that_used_an_older_reading_is_not_cleared_by_the_log(columns
 
     found = replay_stretches(flown(Wrapped(host_law(TABLE), before)), TABLE)
     assert found.cause is not None
-    assert differs(found.record())
+    assert found.record().differs
 
 
 def test_readings_that_repeat_beside_others_that_the_log_lacks_clear_the_firmware_too() -> None:
@@ -288,4 +287,4 @@ def test_a_law_in_fixed_point_that_lost_samples_is_not_cleared_by_readings() -> 
     """Truth: in 1 % of the samples the law was not run and its output stayed."""
     lost = np.random.default_rng(9).random(2001) < 0.01
     log = flown(Lossy(host_law(TABLE, "fixed"), lambda k: "law" if lost[k] else None))
-    assert differs(replay_stretches(log, TABLE).record())
+    assert replay_stretches(log, TABLE).record().differs

@@ -2,59 +2,38 @@
 
 from collections.abc import Sequence
 
-from records.diagnosis import Firmware
+from records.diagnosis import Firmware, LiesIn
 from records.reasons import Note
-from replay.columns import OF_THE_COLUMNS
-from replay.firmware import CLEARED, NOT_FOUND
-from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
-from replay.variants import LATE_OUTPUT
 
 KIND = "firmware"  # of notes: what running it again shows of one log
-# What a replay tells of the log, or of how the code was built, and not of what the firmware does.
-_OF_THE_LOG = (*CLEARED, "begins_in_flight", "fused_multiply_add")
-# What firmware and log cannot be told apart in: the plant may have been given other inputs than were logged.
-_OF_THE_COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE, ANGLE_LOGGED_LATE, LATE_OUTPUT)
-_ROWS_LACK = "rows that the log lacks"
-
-
-def differs(firmware: Firmware | None) -> bool:
-    """Whether the firmware itself did something else than its table says."""
-    if firmware is None or not firmware.replayed or firmware.bit_exact:
-        return False
-    cause = firmware.cause or ""
-    return cause.partition(":")[0] not in _OF_THE_LOG and _ROWS_LACK not in cause
 
 
 def amiss(firmware: Firmware | None) -> str:
     """What is amiss where firmware and log do not agree, in a few words; empty where they do."""
-    if firmware is None or not differs(firmware):
+    if firmware is None or not firmware.differs:
         return ""
-    if _of_the_columns(firmware) or (firmware.cause or NOT_FOUND).startswith(NOT_FOUND):
+    if firmware.lies_in in (LiesIn.COLUMNS, LiesIn.UNEXPLAINED):
         return "the log does not hold what the firmware of its table computes"
     return "the firmware does not do as its table says"
-
-
-def _of_the_columns(firmware: Firmware) -> bool:
-    return (firmware.cause or "").partition(":")[0].split(" + ")[0] in _OF_THE_COLUMNS
 
 
 def firmware_in_words(firmware: Firmware | None, notes: Sequence[Note] = ()) -> str:
     """What running the controller's own code again showed, in one sentence; of which log, where a note says the same of it."""
     if firmware is None:
         return "No log names a controller's table, so no controller's code was run again."
-    again, cause = _again(firmware, notes), _cause(firmware)
+    again, cause = _again(firmware, notes), firmware.sentence
     if not firmware.replayed:
         return f"The controller's code was not run again, so nothing is known of the firmware: {cause or 'its table is not at hand'}."
     if firmware.bit_exact:
         return f"{again} gives every logged input to the bit: the firmware is cleared."
-    if (firmware.cause or "").partition(":")[0] in CLEARED:
+    if firmware.lies_in == LiesIn.LOG:
         return _closed(f"{again} agrees with all that the log holds: {cause}")
     return _closed(f"{again} {_compared(firmware)}: {cause or 'cause not found'}")
 
 
 def firmware_behind_the_first(firmware: Firmware, notes: Sequence[Note]) -> str:
     """The same for a reader of `firmware_first`: without the cause that stands there."""
-    cause = _cause(firmware)
+    cause = firmware.sentence
     if not cause or cause not in firmware_first(firmware):
         return firmware_in_words(firmware, notes)
     return f"{_again(firmware, notes)} {_compared(firmware)}."
@@ -66,7 +45,7 @@ def beside_firmware(firmware: Firmware | None, notes: Sequence[Note]) -> list[No
 
 
 def _says_the_same(note: Note, firmware: Firmware) -> bool:
-    return note.kind == KIND and note.said == f"{note.subject}: {_cause(firmware)}"
+    return note.kind == KIND and note.said == f"{note.subject}: {firmware.sentence}"
 
 
 def _again(firmware: Firmware, notes: Sequence[Note]) -> str:
@@ -81,27 +60,21 @@ def _compared(firmware: Firmware) -> str:
 
 def firmware_first(firmware: Firmware | None) -> str:
     """What must be known of the firmware before anything is said of the plant; empty where it does as its table says."""
-    if firmware is None or not differs(firmware):
+    if firmware is None or not firmware.differs:
         return ""
-    if (firmware.cause or NOT_FOUND).startswith(NOT_FOUND):
+    if firmware.lies_in == LiesIn.UNEXPLAINED:
         since = "" if firmware.first_difference_s is None else f" from {firmware.first_difference_s:g} s on"
         return (
             f"The log holds commands{since} that the firmware of its table does not compute: where they differ, "
             "a cause named in the plant is doubtful."
         )
-    if _of_the_columns(firmware):
+    if firmware.lies_in == LiesIn.COLUMNS:
         return (
-            f"The log does not hold what the firmware of its table computes: {_cause(firmware)}. "
+            f"The log does not hold what the firmware of its table computes: {firmware.sentence}. "
             "What seems to be amiss in the plant may come from that."
         )
-    return f"The firmware does not do what its table says: {_cause(firmware)}. The plant is held against the inputs that were logged."
+    return f"The firmware does not do what its table says: {firmware.sentence}. The plant is held against the inputs that were logged."
 
 
 def _closed(sentence: str) -> str:
     return sentence if sentence.endswith("?") else f"{sentence}."
-
-
-def _cause(firmware: Firmware) -> str:
-    """The sentence of a cause, without its name for machines."""
-    name, colon, sentence = (firmware.cause or "").partition(": ")
-    return sentence if colon and " " not in name.replace(" + ", "") else firmware.cause or ""

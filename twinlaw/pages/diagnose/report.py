@@ -11,7 +11,7 @@ from sim.model import Model
 from twinlaw.pages.block_diagram import block_diagram
 from twinlaw.pages.diagnose.answers import answers_section
 from twinlaw.pages.diagnose.causes import causes_section
-from twinlaw.pages.diagnose.firmware import beside_firmware, differs, firmware_in_words
+from twinlaw.pages.diagnose.firmware import beside_firmware, firmware_in_words
 from twinlaw.pages.diagnose.pictures import Predicted, curves, maps, shape_section
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import Moved, retuned_sentence
@@ -36,7 +36,7 @@ def diagnosis_page(
     """The whole page; `logs` are the names of the files that were diagnosed, `shape` the curve of an effect without a name, `moved` the
     plant's own numbers that moved most."""
     firmware = Section("Firmware", (firmware_in_words(diagnosis.firmware, diagnosis.note_records),))
-    amiss = differs(diagnosis.firmware)
+    amiss = diagnosis.firmware is not None and diagnosis.firmware.differs
     quality = diagnosis_quality(diagnosis)
     sections: list[Section | None] = [firmware] if amiss else []
     sections += [_place(diagnosis, bound.model), causes_section(diagnosis, library(bound), moved)]

@@ -23,7 +23,7 @@ from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.substeps import fastest_rad_s
 from toolchain.memory import keep_freed_memory
-from twinlaw.pages.diagnose.firmware import KIND, differs
+from twinlaw.pages.diagnose.firmware import KIND
 
 
 def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) -> tuple[BoundPlant, Material]:
@@ -79,13 +79,13 @@ def _replayed(log: RunLog, path: Path, looked: LogIntegrity) -> FirmwareReplay |
     if whole is None or whole.bit_exact or not looked.unread.any() or whole.cause == INPUT_UNKNOWN:
         return whole
     read = replay_log(as_sent(as_read(log, looked), looked), path, begins=looked.begins)
-    return whole if differs(None if read is None else read.record()) else read
+    return whole if read is not None and read.record().differs else read
 
 
 def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> ControllerTable | None:
     """The table whose law flew a hold-out log; None where another firmware did: its error in the closed loop is not the model's."""
     own = table_of(log, path)
-    return None if replay is not None and differs(replay.record()) else own
+    return None if replay is not None and replay.record().differs else own
 
 
 def _firmware(
