@@ -86,10 +86,9 @@ def plans(case: Case, period_s: float) -> Iterator[Plan]:
     make = _Maker(case, room, period_s)
     yield make.lively("lively run", "fly every axis in steps, at times that do not coincide", 0.05)
     unseen = [case.library.outputs[place] for place, slot in enumerate(case.slots) if slot < 0]
-    if unseen and model.places.rotors:
-        told = " and ".join(name.rsplit("_rad_s", 1)[0] for name in unseen if name.startswith("omega"))
-        if told:
-            yield make.lively("rotor speeds logged", f"repeat a lively run with {told} in the log", 0.3, speeds=True)
+    told = " and ".join(name.rsplit("_rad_s", 1)[0] for name in unseen if name in case.library.rotor_speeds)
+    if told:
+        yield make.lively("rotor speeds logged", f"repeat a lively run with {told} in the log", 0.3, speeds=True)
     if len(room) > 1:
         for held in room:
             others = " and ".join(entry.axis for entry in room if entry is not held)

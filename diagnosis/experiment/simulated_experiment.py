@@ -73,7 +73,7 @@ def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypoth
             return None
     extra = {}
     if plan.speeds:
-        extra = {name: x[:, k] for k, name in enumerate(library.states) if name.startswith("omega")}
+        extra = {name: x[:, k] for k, name in enumerate(library.states) if name in library.rotor_speeds}
     log = RunLog(
         case.flights[0].log.columns,
         law.period_s,

@@ -90,6 +90,12 @@ class EffectLibrary:
         return tuple(str(state) for state in self.bound.model.states)
 
     @cached_property
+    def rotor_speeds(self) -> tuple[str, ...]:
+        """Those of its states that are the speed of a rotor."""
+        speeds = {str(rotor.speed) for rotor in self.bound.model.places.rotors.values()}
+        return tuple(state for state in self.states if state in speeds)
+
+    @cached_property
     def velocities(self) -> tuple[int, ...]:
         """Which of its states is each axis' velocity."""
         return tuple(self.states.index(str(axis.velocity)) for axis in self.bound.model.axes)

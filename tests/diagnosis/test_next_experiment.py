@@ -18,10 +18,12 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
+from records.log import RunLog
 from records.plant import load_plant
 from sim.bind import BoundPlant, bind
+from sim.columns import log_columns
 from tests.diagnosis.conftest import Fly
-from tests.own_plants import WORKING
+from tests.own_plants import TWO_AXES, WORKING
 from tests.plants import bound
 
 SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
@@ -152,3 +154,13 @@ def test_the_stand_in_law_holds_an_unstable_plant_along_its_references(case: Cas
     assert flown is not None
     assert flown.within_limits
     assert np.abs(flown.log.y - plan.course.reference)[100:].max() < 0.15
+
+
+def test_a_rotor_s_speed_is_known_by_its_place_whatever_its_name(plant: BoundPlant, tmp_path: Path) -> None:
+    # Truth: the boom's rotor has a state of its own, called w_V; the post's pushes as its input says.
+    boom = bind(load_plant(TWO_AXES.write(tmp_path, "boom")))
+    assert effect_library(boom).rotor_speeds == ("w_V",)
+    assert effect_library(plant).rotor_speeds == ("omega_M_rad_s", "omega_T_rad_s")
+    log = RunLog(log_columns(boom.model), 0.01, "open", np.arange(300) * 0.01, np.zeros((300, 2)), np.zeros((300, 2)))
+    menu = {plan.name: plan.instruction for plan in plans(make_case(effect_library(boom), [log]), PERIOD_S)}
+    assert menu["rotor speeds logged"] == "repeat a lively run with w_V in the log"
