@@ -16,6 +16,7 @@ from replay import thresholds
 from replay.flight import (
     ReplayedLog,
     advanced,
+    blocks,
     candidates_for_misread,
     candidates_for_missing,
     candidates_for_unmeasured,
@@ -64,7 +65,9 @@ class Trace:
         return sum(incident.samples for incident in self.incidents if incident.kind == kind)
 
 
-_Gap = tuple[Any, tuple[int, int]]  # the state before samples that the log lacks, and which they are
+_Gap = tuple[
+    Any, tuple[int, int]
+]  # the state before samples that the log lacks, or an answer that it lacks, and which they are
 
 
 @dataclass(frozen=True)
@@ -119,9 +122,10 @@ class Follower:
         n = len(self.inputs)
         state, row = self._law.start(self.inputs[0, self._loops :]), 0
         incidents: list[Incident] = []
-        gaps = list(self._flight.missing)
+        gaps = self._gaps()
         last_gap: _Gap | None = None
         while True:
+            gaps = [gap for gap in gaps if gap[0] >= row]  # an incident may last beyond the next
             stop = gaps[0][0] if gaps else n
             row = self._run(state, row, stop)
             if row == n:
@@ -134,6 +138,16 @@ class Follower:
                 return Trace(row, tuple(incidents))
             incidents.append(Incident(best.kind, best.first, max(1, best.behind - best.first)))
             state, row = best.state, best.behind
+
+    def _gaps(self) -> list[tuple[int, int]]:
+        """Samples that the log lacks, and rows of it whose answer is not known, each by itself but those that tell nothing."""
+        unanswered: NDArray[np.bool_] = np.asarray(np.isnan(self._wanted).any(axis=1))
+        for first, behind in ((0, 1), *self._flight.missing):
+            unanswered[first:behind] = False
+        unread = np.isnan(self.inputs[:, self._loops :]).any(axis=1)
+        nothing = unanswered & unread & np.isnan(self._wanted).all(axis=1)
+        alone = np.flatnonzero(unanswered & ~nothing).tolist()
+        return sorted((*self._flight.missing, *blocks(nothing), *((row, row + 1) for row in alone)))
 
     def _judged(self, trace: Trace) -> Trace:
         """Incidents alone are no explanation: enough samples in which the output moved must be the law's own answers."""
@@ -275,8 +289,18 @@ class Follower:
         state, (first, behind) = gap
         if behind > row + 1:
             return
+        if (first, behind) not in self._flight.missing and behind - first == 1:
+            yield from self._unanswered(first, state)
+            return
         yield _Hypothesis(UNLOGGED, first, behind, self._law.copied(state))
         yield from self._given(state, (first, behind), candidates_for_missing(self._flight, (first, behind)))
+
+    def _unanswered(self, row: int, state: Any) -> Iterator[_Hypothesis]:
+        """A row whose command is not known: only the next answers tell what the law read there, if the log lacks that or holds another."""
+        if np.isnan(self.inputs[row]).any():
+            yield from self._given(state, (row, row + 1), candidates_for_unmeasured(self._flight, row))
+        if self._misread:
+            yield from self._read_otherwise(row, state, 1)
 
     def _given(
         self, state: Any, rows: tuple[int, int], candidates: Iterable[Array], none: NDArray[np.bool_] | bool = False

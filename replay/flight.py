@@ -132,7 +132,7 @@ def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
         logged_V=u_V,
         half_step_V=np.column_stack([p.half_step(column) for p, column in zip(written, u_V.T, strict=False)])
         * PRINT_MARGIN,
-        missing=_blocks(~np.isin(np.arange(n), samples)),
+        missing=blocks(~np.isin(np.arange(n), samples)),
         printings=written,
         steps_rad=steps_rad,
         rows=samples,
@@ -220,7 +220,7 @@ def _spread(values: Array, samples: NDArray[np.int64], n: int) -> Array:
     return spread
 
 
-def _blocks(marked: NDArray[np.bool_]) -> tuple[tuple[int, int], ...]:
+def blocks(marked: NDArray[np.bool_]) -> tuple[tuple[int, int], ...]:
     """Runs of True as (first, behind last)."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], marked, [False]]).astype(np.int8)))
     return tuple((int(a), int(b)) for a, b in edges.reshape(-1, 2))

@@ -92,6 +92,27 @@ def test_commands_of_zero_now_and_then_are_not_laid_on_the_firmware(tmp_path: Pa
     assert "the firmware is cleared" in said[0]
 
 
+@pytest.mark.parametrize("share", [0.01, 0.03])
+@pytest.mark.parametrize("angles", [[0], [1], [0, 1]])
+def test_rows_that_lack_a_command_and_a_reading_too_are_not_laid_on_the_firmware(
+    angles: list[int], share: float, tmp_path: Path
+) -> None:
+    """Truth: the flight of the table's own law; in some rows, two of them side by side here and there, both commands are zero and some
+    angles were not read."""
+    lost = np.random.default_rng(3).random(len(own().t_s)) < share
+    u, y = own().u.copy(), own().y.copy()
+    u[lost] = 0.0
+    y[np.ix_(lost, angles)] = np.nan
+    save_log(tmp_path / "lost.csv", replace(own(), u=u, y=y))
+    replay, said = recorded_replay(tmp_path / "lost.csv", ce150_table(), plant())
+    assert replay.sent is None
+    assert "the firmware is cleared" in said[0] or "in all others every bit agrees" in said[0]
+    save_log(tmp_path / "late.csv", replace(own(), u=np.concatenate([u[:1], u[:-1]]), y=y))
+    replay, said = recorded_replay(tmp_path / "late.csv", ce150_table(), plant())
+    assert replay.sent is not None
+    assert "the firmware sent its output one sample late" in said[0]
+
+
 def test_a_firmware_at_fault_behind_commands_of_zero_is_still_told(tmp_path: Path) -> None:
     """Truth: the law's output came one sample late, and the log lacks some of it."""
     u = np.concatenate([own().u[:1], own().u[:-1]])
