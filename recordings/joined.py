@@ -109,8 +109,8 @@ def on_one_clock(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], l
     }
     told = ", ".join(f"{begin:g} s" for begin in begins[1:4])
     said = (
-        f"times begin again {len(begins) - 1} times: several recordings in one file; they count on from {told} here, "
-        "and each is used as another log"
+        f"times begin again at {len(begins) - 1} place{'s' if len(begins) > 2 else ''}: several recordings in one file; they count on from "
+        f"{told} here, and each is used as another log"
     )
     return {name: Channel(moved.get(name), c.values, c.faults) for name, c in channels.items()}, [said]
 

@@ -59,8 +59,10 @@ def _label(name: str, texts: Mapping[str, str], signals: Mapping[str, object]) -
 
 
 def _of_info(name: str, texts: Mapping[str, str]) -> str:
-    """The unit in what a timeseries says of its data and times, where it was saved as a structure: `Data` beside `DataInfo`."""
-    return next((texts[place] for word in UNITS if (place := f"{name}Info.{word}") in texts), "")
+    """The unit in what a timeseries says of its data and times, where it was saved as a structure: `Data` beside `DataInfo`, in which it
+    is a text, or Simulink's object that has its name."""
+    places = (f"{name}Info.{word}{of}" for word in UNITS for of in ("", ".Name"))
+    return next((texts[place] for place in places if place in texts), "")
 
 
 def _of_series(name: str, signals: Mapping[str, object]) -> str:

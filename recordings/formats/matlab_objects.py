@@ -118,6 +118,7 @@ def _series(held: Mapping[str, Any]) -> dict[str, Any]:
     data = np.asarray(held.get("Data_", held.get("Data")))
     told = held.get("DataInfo")
     unit = told.get("Units", "") if isinstance(told, Mapping) else ""
+    unit = unit.get("Name", "") if isinstance(unit, Mapping) else unit  # Simulink's object
     name = held.get("Name", "")
     return {"Time": times, "Data": np.squeeze(data), "Name": "" if name == UNNAMED else name, "Units": unit}
 

@@ -32,7 +32,8 @@ def restart_rows(values: Array) -> NDArray[np.int64]:
     if not falls.size or np.diff([0, *falls.tolist(), len(values)]).min() < LEAST_ROWS:
         return np.zeros(0, np.int64)
     least_fall = LEAST_ROWS * float(np.median(np.diff(values)))
-    stays = (values[falls - 1] - values[falls] >= least_fall) & (values[falls + 1] < values[falls - 1])
+    behind = values[falls[:, None] + np.arange(LEAST_ROWS)]
+    stays = (values[falls - 1] - values[falls] >= least_fall) & (np.median(behind, axis=1) < values[falls - 1])
     return falls if stays.all() else np.zeros(0, np.int64)
 
 

@@ -88,6 +88,17 @@ def test_stamps_coarser_than_the_rows_lose_no_sample_and_no_command(tmp_path: Pa
     assert "coarse_stamps" in {found.kind for found in examine([read], PLANT, names=["log"]).findings}
 
 
+def test_a_clock_that_is_back_for_three_rows_begins_no_other_recording(tmp_path: Path) -> None:
+    """Truth: one recording, of which three rows bear a time 3 s too early, more than a short recording lasts."""
+    log = log_of(1500)
+    t_s = log.t_s.copy()
+    t_s[700:703] -= 3.0
+    read = load_log(in_one_file(tmp_path, replace(log, t_s=t_s)), log.columns)
+    assert (len(read.t_s), read.t_s[-1], read.restarts) == (1497, log.t_s[-1], ())
+    assert read.disordered is not None
+    assert read.disordered.rows == 3
+
+
 @pytest.mark.parametrize("rows", [[*range(300)][::-1], [*range(100), *range(60, 160), *range(120, 300)]])
 def test_more_than_a_tenth_of_the_rows_out_of_order_are_refused(rows: list[int], tmp_path: Path) -> None:
     log = log_of(300)

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 DECIMALS = (".", ",")
 # What spreadsheets, MATLAB, R, pandas and loggers write where there is no value.
 _WORDS = (
-    "nan na n/a null none nil - -- --- . ? * invalid missing -nan nan(ind) -nan(ind) nan(snan) -nan(snan) "
+    "nan na n/a n.a. null none nil - -- --- . ? * invalid missing -nan nan(ind) -nan(ind) nan(snan) -nan(snan) "
     "1.#qnan -1.#qnan 1.#snan -1.#snan 1.#ind -1.#ind"
 )
 MISSING = frozenset(("", *_WORDS.split()))

@@ -1,5 +1,6 @@
 """Every kind of .mat file that a run may be saved in; what is missing, broken or ambiguous is refused by name."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -246,15 +247,18 @@ def test_names_beside_a_matrix_are_told_and_taken_only_where_one_array_of_them_f
             imported_here(tmp_path / "two.mat", ColumnMapping())
 
 
-def test_a_timeseries_as_a_structure_keeps_the_units_of_its_data_and_times(tmp_path: Path) -> None:
-    """Truth: what MATLAB's get(ts) holds: degrees beside the data, milliseconds beside the times."""
+@pytest.mark.parametrize("stated", [str, lambda unit: {"Name": unit}])
+def test_a_timeseries_as_a_structure_keeps_the_units_of_its_data_and_times(
+    stated: Callable[[str], object], tmp_path: Path
+) -> None:
+    """Truth: what MATLAB's get(ts) holds: degrees beside the data, as a text or as Simulink's unit, milliseconds beside the times."""
     angles = ("psi_rad", "phi_rad")
     saved = {
         name: {
             "Time": 1e3 * T_S,
             "TimeInfo": {"Units": "milliseconds", "Start": 0.0},
             "Data": np.degrees(RUN[name]) if name in angles else RUN[name],
-            "DataInfo": {"Units": "deg" if name in angles else "V", "UserData": np.zeros((0, 0))},
+            "DataInfo": {"Units": stated("deg" if name in angles else "V"), "UserData": np.zeros((0, 0))},
         }
         for name in FOUR
     }

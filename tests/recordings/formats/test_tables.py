@@ -49,7 +49,7 @@ def test_recordings_behind_one_another_are_counted_on_and_a_part_is_one_of_them(
     (tmp_path / "run.csv").write_text(head + runs[0] + head + runs[1])
     done = imported_here(tmp_path / "run.csv", ColumnMapping())
     np.testing.assert_allclose(done.log.t_s, [*t_s, *(t_s + 3.0)], atol=1e-12)
-    assert any("times begin again 1 times" in told and "from 3 s here" in told for told in done.found)
+    assert any("times begin again at 1 place:" in told and "from 3 s here" in told for told in done.found)
     assert any("the header stands again in line 202" in told for told in done.found)
     second = imported_here(tmp_path / "run.csv", ColumnMapping(), Span(3.0)).log
     np.testing.assert_allclose(second.column("psi_rad"), 0.5 * t_s, atol=1e-12)
