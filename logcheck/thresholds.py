@@ -25,13 +25,6 @@ LONGER_THAN_OFTEN = Limit(4.0, "times that step", "a gap is longer than what oft
 DEAD_S = Limit(0.2, "s", "an output that stands this long", "18 000 stands in honest logs")
 DEAD_ROWS = Count(5, "rows of one value", "fewer are no stand")
 USUAL_MOVE_PERCENT = Limit(99.0, "percentile", "of moves from row to row")
-DEAD_JUMP = Limit(
-    5.0,
-    "times the usual move",
-    "18 000 stands in honest logs ended with 1.2 of it at most",
-    "18 000 stands in honest logs",
-)
-DEAD_JUMP_STEPS = Limit(20.0, "least moves", "on a coarse grid one least move is no jump")
 MOVED_STEPS = Limit(4.0, "least moves", "an axis is surely under way")
 AROUND_STAND_ROWS = Count(5, "rows", "before or after a stand show how fast the axis is there")
 WAY_ROWS = Count(20, "rows", "in which an axis that is under way goes on")

@@ -6,13 +6,11 @@ Of a reading nothing is kept. A command went on meanwhile, between those beside 
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
-
-Places = NDArray[np.intp]
+from records.logs.unwritten import LEAP, beside_rows, leap_of
 
 
 def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
@@ -26,11 +24,8 @@ def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
     least = max(float(moves[moves > 0.0].min(initial=np.inf)), step)
     if not np.isfinite(least):
         return
-    leap = max(
-        thresholds.DEAD_JUMP * float(np.percentile(moves, thresholds.USUAL_MOVE_PERCENT)),
-        thresholds.DEAD_JUMP_STEPS * least,
-    )
-    _, before, after = _beside(others, len(values))
+    leap = leap_of(moves, least)
+    _, before, after = beside_rows(others, len(values))
     near = np.minimum(np.abs(values[before]), np.abs(values[after]))
     near[: others[0]] = 0.0
     near[others[-1] :] = 0.0
@@ -59,14 +54,14 @@ def zero_input_findings(log: RunLog, name: str, column: str) -> Iterator[Found]:
     others = np.flatnonzero(values != 0.0)
     if others.size in (0, 1, len(values)):
         return
-    place, before, after = _beside(others, len(values))
+    place, before, after = beside_rows(others, len(values))
     inside: Rows = (values == 0.0) & (place > 0) & (place < others.size)
     near = np.where(
         values[before] * values[after] > 0.0, np.minimum(np.abs(values[before]), np.abs(values[after])), 0.0
     )
     moves = np.diff(values[others])
     beside_it = [np.abs(moves[np.clip(place + shift, 0, moves.size - 1)]) for shift in (-2, -1, 0)]
-    leaps = near > np.maximum(_beyond_what_it_does(moves), thresholds.DEAD_JUMP * np.max(beside_it, axis=0))
+    leaps = near > np.maximum(_beyond_what_it_does(moves), LEAP * np.max(beside_it, axis=0))
     clear: Rows = inside & leaps
     few: Rows = after - before <= thresholds.BRIDGED_ROWS + 1
     stands = int(np.unique(before[clear & ~few]).size)  # an input that rests at zero for longer was sent there
@@ -85,18 +80,10 @@ def zero_input_findings(log: RunLog, name: str, column: str) -> Iterator[Found]:
     yield Found(Finding("zero_command", name, column, float(at[0]), float(at[-1]), sentence, EXCLUDE, count), unknown)
 
 
-def _beside(others: Places, rows: int) -> tuple[Places, Places, Places]:
-    """Of each row (rows,): how many of the rows `others` lie before it, and the next of them before and behind it, at an end the last."""
-    place = np.searchsorted(others, np.arange(rows))
-    before, after = (others[np.clip(place - back, 0, others.size - 1)] for back in (1, 0))
-    return place, before, after
-
-
 def _beyond_what_it_does(moves: Array) -> float:
     """How far an input that makes these moves (n,) goes in no row to come back in the next; one that never comes back is of levels."""
     sizes = np.abs(moves)
     back = np.where(moves[:-1] * moves[1:] < 0.0, np.minimum(sizes[:-1], sizes[1:]), 0.0)
     if not back.any():  # one level, and off: so an input is switched
         return thresholds.BESIDE_ZERO_STEPS * float(sizes.min(initial=np.inf, where=sizes > 0.0))
-    usual = float(np.percentile(back, thresholds.USUAL_MOVE_PERCENT))
-    return max(thresholds.DEAD_JUMP * usual, thresholds.DEAD_JUMP_STEPS * float(back[back > 0.0].min()))
+    return leap_of(back, float(back[back > 0.0].min()))
