@@ -36,30 +36,32 @@ def break_findings(log: RunLog, name: str) -> Iterator[Found]:
     """Notes on rows in which nothing was written, or of the last one a part, on inputs that begin late, on stamps too coarse to tell rows
     apart, on rows out of order, on other recordings in the file, and on stretches without rows, behind which the log goes on as another
     one."""
-    if log.half_row:
+    if log.mended.half_row:
         end_s = float(log.t_s[-1])
-        yield Found(Finding("half_row", name, None, end_s, end_s, log.half_row.told, rows=1))
-    for late in log.late_inputs:
+        yield Found(Finding("half_row", name, None, end_s, end_s, log.mended.half_row.told, rows=1))
+    for late in log.mended.late_inputs:
         sentence = (
             f"{late.column} begins at {late.begins_s:.6g} s: {in_words(late.rows, 'row')} in front of it left out"
         )
         yield Found(Finding("late_input", name, late.column, late.begins_s, late.begins_s, sentence, rows=late.rows))
-    if log.spread:
+    if log.mended.spread:
         span = (float(log.t_s[0]), float(log.t_s[-1]))
-        yield Found(Finding("coarse_stamps", name, "t_s", *span, f"t_s: {log.spread.told}", rows=log.spread.rows))
-    if log.unwritten:
-        count, first_s = log.unwritten.rows, log.unwritten.first_s
+        yield Found(
+            Finding("coarse_stamps", name, "t_s", *span, f"t_s: {log.mended.spread.told}", rows=log.mended.spread.rows)
+        )
+    if log.mended.unwritten:
+        count, first_s = log.mended.unwritten.rows, log.mended.unwritten.first_s
         sentence = f"nothing was written in {in_words(count, 'row')}, first at {first_s:.6g} s; left out"
         yield Found(Finding("unwritten_rows", name, None, first_s, first_s, sentence, rows=count))
-    if log.disordered:
-        count, first_s = log.disordered.rows, log.disordered.first_s
+    if log.mended.disordered:
+        count, first_s = log.mended.disordered.rows, log.mended.disordered.first_s
         sentence = f"t_s: {in_words(count, 'row')} whose time does not rise, first at {first_s:.6g} s; left out"
         begins = behind_lost_times(log)
         if begins.any():
             anew = " and ".join(f"{at_s:.6g} s" for at_s in log.t_s[begins][: thresholds.TIMES_SHOWN])
             sentence += f"; from {anew} on the log is used as another one"
         yield Found(Finding("disordered_rows", name, "t_s", first_s, first_s, sentence, rows=count), begins=begins)
-    restarts = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts])
+    restarts = np.searchsorted(log.t_s, [entry.at_s for entry in log.mended.restarts])
     if restarts.size:
         yield _restarted(log, name, restarts)
     missing = gaps(log.t_s)
@@ -79,7 +81,7 @@ def _restarted(log: RunLog, name: str, rows: NDArray[np.int64]) -> Found:
     begins[rows] = True
     told = [
         f"at {entry.own_s:g} s behind {log.t_s[row - 1]:.6g} s, which counts as {entry.at_s:g} s here"
-        for entry, row in zip(log.restarts[: thresholds.TIMES_SHOWN], rows.tolist(), strict=False)
+        for entry, row in zip(log.mended.restarts[: thresholds.TIMES_SHOWN], rows.tolist(), strict=False)
     ]
     more = f" and {len(rows) - thresholds.TIMES_SHOWN} times more" if len(rows) > thresholds.TIMES_SHOWN else ""
     sentence = f"times begin again {', '.join(told)}{more}: several recordings in one file; each is used as another log"

@@ -63,7 +63,7 @@ def timing(log: RunLog) -> Timing:
 def _without_pauses(log: RunLog) -> Array:
     """The times with one usual step in front of each other recording of the file."""
     steps = np.diff(log.t_s)
-    rows = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts]) - 1
+    rows = np.searchsorted(log.t_s, [entry.at_s for entry in log.mended.restarts]) - 1
     steps[rows] = np.median(steps) if rows.size else 0.0
     return np.concatenate([log.t_s[:1], log.t_s[:1] + np.cumsum(steps)]) if rows.size else log.t_s
 

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
-from records.log import LogColumns, RunLog
+from records.log import RunLog
+from records.logs.columns import LogColumns
 
 Array = NDArray[np.float64]
 

@@ -28,8 +28,10 @@ from recordings.proposal import proposed
 from recordings.row_order import in_time
 from recordings.signals import Contents, Signal, listed
 from records.errors import BadInput
-from records.log import LOOPS, LogColumns, RunLog, facts_of_sidecar
+from records.log import RunLog
 from records.logs.clock import finer_unit
+from records.logs.columns import LogColumns
+from records.logs.sidecar import LOOPS, facts_of_sidecar
 from records.plant import load_plant
 from records.text.units import unit_of
 from sim.columns import log_columns, reference_name

@@ -7,8 +7,8 @@ import numpy as np
 
 from recordings.channels import Array, Channel, Span, taken
 from recordings.signals import counted
-from records.log import LogColumns
 from records.logs.coarse_stamps import own_times
+from records.logs.columns import LogColumns
 from records.logs.restarts import pause_s, restart_rows
 from records.logs.unwritten import unwritten_rows
 

@@ -11,7 +11,7 @@ import numpy as np
 from recordings.formats.clocks import is_time_name
 from recordings.signals import Contents, Signal
 from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
-from records.log import LogColumns
+from records.logs.columns import LogColumns
 from records.text.units import unit_of, unit_suffix
 
 # Words for one thing: columns bear the symbol, logs mostly the word.

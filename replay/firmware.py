@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from records.diagnosis import Firmware, LiesIn
 from records.errors import BadInput
-from records.log import DOUBLE, RunLog
+from records.log import RunLog
+from records.logs.sidecar import DOUBLE
 from records.table import ControllerTable
 from records.text.units import units_of
 from replay.arithmetic import FIXED, Replayed, misread_in_fixed, replayed, replayed_in_fixed

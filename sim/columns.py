@@ -1,6 +1,6 @@
 """Columns of a plant's run logs, derived from its equations."""
 
-from records.log import LogColumns
+from records.logs.columns import LogColumns
 from records.text.units import unit_suffix
 from sim.model import Model
 

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput, VerificationFailed
-from records.log import DOUBLE, RunLog
+from records.log import RunLog
 from records.logs.live import LiveRow
+from records.logs.sidecar import DOUBLE
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.columns import log_columns, reference_name

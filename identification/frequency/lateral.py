@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from logcheck.facts import PlantFacts
 from records.errors import BadInput
-from records.log import LogColumns
+from records.logs.columns import LogColumns
 from records.plant import Plant
 from records.text.units import dimensions
 

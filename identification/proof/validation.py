@@ -8,7 +8,8 @@ import numpy as np
 from design.law import FloatLaw
 from design.settings import read_settings
 from design.table import design
-from records.log import DOUBLE, RunLog
+from records.log import RunLog
+from records.logs.sidecar import DOUBLE
 from records.loops import LOOPS
 from records.table import ControllerTable
 from sim.bind import BoundPlant

@@ -52,7 +52,7 @@ def seam_findings(
 
 def behind_lost_times(log: RunLog) -> Rows:
     """Rows (n,) in front of which more rows went back in time, and were left out, than a filter can bridge: another log begins there."""
-    went_back = log.disordered.went_back if log.disordered else ()
+    went_back = log.mended.disordered.went_back if log.mended.disordered else ()
     return np.isin(log.t_s, [at_s for at_s, rows in went_back if rows > thresholds.BRIDGED_ROWS])
 
 

@@ -10,7 +10,7 @@ import tomlkit
 from recordings.layout import FOUND, TextLayout
 from records.errors import BadInput
 from records.files import write_atomic
-from records.log import LOOPS
+from records.logs.sidecar import LOOPS
 from records.text import checks
 from records.text.reading import read_text, read_toml
 

@@ -107,9 +107,9 @@ def test_a_clock_that_was_set_back_loses_rows_and_what_follows_is_another_log(
 def test_a_clock_that_was_set_back_bears_no_stamps_coarser_than_the_rows(tmp_path: Path) -> None:
     log = log_of()
     read = read_back(replace(log, t_s=np.where(np.arange(2000) < 1000, log.t_s, np.round(log.t_s - 0.3, 2))), tmp_path)
-    assert read.spread is None
-    assert read.disordered is not None
-    assert read.disordered.rows == 30
+    assert read.mended.spread is None
+    assert read.mended.disordered is not None
+    assert read.mended.disordered.rows == 30
 
 
 def test_a_last_row_that_was_written_in_part_is_told(tmp_path: Path) -> None:

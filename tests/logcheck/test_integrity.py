@@ -8,7 +8,8 @@ import pytest
 
 from logcheck.integrity import demand
 from records.errors import BadInput
-from records.log import LogColumns, RunLog
+from records.log import RunLog
+from records.logs.columns import LogColumns
 from sim.columns import log_columns
 from tests.logcheck.flight import TURN_STEP_RAD, clean, examined, kinds, other_flight, with_column
 from tests.replay.firmware_flights import plant, rows_of

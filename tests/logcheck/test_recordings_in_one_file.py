@@ -47,7 +47,7 @@ def test_times_that_begin_again_begin_another_log(tmp_path: Path, header: bool) 
     log = load_log(in_one_file(tmp_path, first, log_of(800), later, header=header), first.columns)
     assert begins(log) == [2000, 2800]
     assert np.diff(log.t_s).min() > 0.0
-    assert [(entry.at_s, entry.own_s) for entry in log.restarts] == [(21.0, 0.0), (30.0, 5.0)]
+    assert [(entry.at_s, entry.own_s) for entry in log.mended.restarts] == [(21.0, 0.0), (30.0, 5.0)]
     (found,) = examine([log], PLANT, names=["log"]).findings
     assert found.kind == "restart"
     assert "at 0 s behind 19.99 s, which counts as 21 s here" in found.sentence
@@ -94,9 +94,9 @@ def test_a_clock_that_is_back_for_three_rows_begins_no_other_recording(tmp_path:
     t_s = log.t_s.copy()
     t_s[700:703] -= 3.0
     read = load_log(in_one_file(tmp_path, replace(log, t_s=t_s)), log.columns)
-    assert (len(read.t_s), read.t_s[-1], read.restarts) == (1497, log.t_s[-1], ())
-    assert read.disordered is not None
-    assert read.disordered.rows == 3
+    assert (len(read.t_s), read.t_s[-1], read.mended.restarts) == (1497, log.t_s[-1], ())
+    assert read.mended.disordered is not None
+    assert read.mended.disordered.rows == 3
 
 
 @pytest.mark.parametrize("rows", [[*range(300)][::-1], [*range(100), *range(60, 160), *range(120, 300)]])
@@ -134,7 +134,7 @@ def test_rows_in_front_of_an_input_s_first_number_are_left_out_in_each_recording
     assert begins(read) == [880]
     told = {entry.kind: entry.sentence for entry in examine([read], PLANT, names=["log"]).findings}
     assert set(told) == {"late_input", "restart"}
-    assert [(late.column, late.begins_s, late.rows) for late in read.late_inputs] == [
+    assert [(late.column, late.begins_s, late.rows) for late in read.mended.late_inputs] == [
         ("u_T_V", 1.2, 120),
         ("u_T_V", 11.3, 30),
     ]

@@ -14,7 +14,7 @@ from recordings.layout import FOUND
 from recordings.mapping.mapping import ColumnMapping
 from recordings.signals import Signal
 from records.errors import BadInput
-from records.log import LogColumns
+from records.logs.columns import LogColumns
 
 COLUMNS = LogColumns("heater", inputs=("heat_W",), outputs=("T_K", "rise_K_s"), optional=(), axes=())
 t_s = 0.05 * np.arange(200)

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from records.errors import BadInput
-from records.log import LogColumns, RunLog, csv_text, load_log, plant_of_log, save_log
+from records.log import RunLog, csv_text, load_log, save_log
+from records.logs.columns import LogColumns
+from records.logs.sidecar import plant_of_log
 
 COLUMNS = LogColumns(
     "ce150", ("u_M_V", "u_T_V"), ("psi_rad", "phi_rad"), ("omega_M_rad_s", "psi_ref_rad"), ("elevation", "azimuth")
@@ -148,8 +150,8 @@ def test_a_wrong_csv_is_refused_with_its_line(files, csv, message):
 def test_a_last_row_that_was_written_in_part_is_left_out_and_told(files, last):
     log = files(csv=HEADER + ROWS + last)
     np.testing.assert_array_equal(log.t_s, [0.0, 0.01])
-    assert log.half_row is not None
-    assert log.half_row.told.startswith("line 4, the last")
+    assert log.mended.half_row is not None
+    assert log.mended.half_row.told.startswith("line 4, the last")
 
 
 @pytest.mark.parametrize(
@@ -165,7 +167,7 @@ def test_a_last_row_that_was_written_in_part_is_left_out_and_told(files, last):
 def test_a_last_row_that_is_whole_stays(files, before, last):
     log = files(csv=HEADER + before + last)
     assert log.t_s[-1] == 0.02
-    assert log.half_row is None
+    assert log.mended.half_row is None
 
 
 @pytest.mark.parametrize(
@@ -231,8 +233,8 @@ def test_rows_in_which_nothing_was_written_are_left_out_and_said(tmp_path, stand
     (tmp_path / "a.csv").write_text(text.replace("nan", ""))
     (tmp_path / "a.toml").write_text(SIDECAR)
     read = load_log(tmp_path / "a.csv", COLUMNS)
-    assert read.unwritten is not None
-    assert (read.unwritten.rows, read.unwritten.first_s) == (lost.sum(), log.t_s[rests + 10])
+    assert read.mended.unwritten is not None
+    assert (read.mended.unwritten.rows, read.mended.unwritten.first_s) == (lost.sum(), log.t_s[rests + 10])
     np.testing.assert_array_equal(read.t_s, log.t_s[~lost])
     np.testing.assert_array_equal(read.u, log.u[~lost])
     np.testing.assert_array_equal(read.y, log.y[~lost])
@@ -247,5 +249,5 @@ def test_rows_of_zeros_that_a_plant_can_hold_are_rows(tmp_path):
     for u, y in ((passing, 0.001 * np.round(50.0 * passing)), (switched, 0.1 * switched), (resting, 0.1 * resting)):
         save_log(tmp_path / "a.csv", RunLog(COLUMNS, 0.01, "open", t_s, u, y))
         read = load_log(tmp_path / "a.csv", COLUMNS)
-        assert read.unwritten is None
+        assert read.mended.unwritten is None
         np.testing.assert_array_equal(read.u, u)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from records.errors import BadInput
-from records.log import LogColumns, RunLog, load_log, save_log
+from records.log import RunLog, load_log, save_log
+from records.logs.columns import LogColumns
 from records.logs.source import Source
 from records.text.units import unit_suffix
 

@@ -28,7 +28,8 @@ from recordings.mapping.mapping import ColumnMapping, load_mapping, save_mapping
 from recordings.proposal import overview, proposed
 from records.errors import BadInput
 from records.files import demand_writable
-from records.log import LOOPS, RunLog, save_log
+from records.log import RunLog, save_log
+from records.logs.sidecar import LOOPS
 from twinlaw.cli import console, options
 
 

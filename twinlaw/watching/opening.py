@@ -8,7 +8,8 @@ from controllers import loading
 from logcheck.integrity import OTHER_NUMBERS, as_read, demand, examine
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.log import load_log, plant_of_log
+from records.log import load_log
+from records.logs.sidecar import plant_of_log
 from records.protocol import protocol_of
 from replay.table import timed_by_table
 from rig.emulator.serial_port import EmulatedSerial

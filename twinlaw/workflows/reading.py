@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from records.errors import BadInput
-from records.log import RunLog, load_log, plant_of_log
+from records.log import RunLog, load_log
+from records.logs.sidecar import plant_of_log
 from records.plant import load_plant
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns

@@ -9,7 +9,8 @@ from design.law import FloatLaw
 from identification import thresholds
 from identification.frequency.flights.sweep import Sweep, sweep_input
 from records.errors import BadInput
-from records.log import DOUBLE, RunLog
+from records.log import RunLog
+from records.logs.sidecar import DOUBLE
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import rest_with

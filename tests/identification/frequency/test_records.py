@@ -7,7 +7,8 @@ from identification.frequency.lateral import StateSpace
 from identification.frequency.models.linear_run import linear_run
 from identification.frequency.responses.record import Record, record_of, with_instruments
 from records.errors import BadInput
-from records.log import LogColumns, RunLog
+from records.log import RunLog
+from records.logs.columns import LogColumns
 
 COLUMNS = LogColumns("lag", ("u_V",), ("x_rad",), ("x_ref_rad",), ())
 

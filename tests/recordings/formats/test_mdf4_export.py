@@ -13,7 +13,8 @@ from recordings.formats.mdf4_export import mdf4_bytes
 from recordings.layout import FOUND
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
-from records.log import RunLog, facts_of_sidecar, save_log
+from records.log import RunLog, save_log
+from records.logs.sidecar import facts_of_sidecar
 from records.text.units import unit_of
 from sim.columns import log_columns
 from sim.plants import MODELS

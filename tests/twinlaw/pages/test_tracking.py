@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from records.log import LogColumns, RunLog
+from records.log import RunLog
+from records.logs.columns import LogColumns
 from records.loops import Loop
 from sim.activity import activity
 from sim.tracking import Tracking, tracking

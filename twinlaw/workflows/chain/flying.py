@@ -8,7 +8,8 @@ import numpy as np
 from controllers import loading
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.log import DOUBLE, RunLog
+from records.log import RunLog
+from records.logs.sidecar import DOUBLE
 from records.loops import LOOPS
 from records.quality import STEP_ERROR
 from records.table import ControllerTable

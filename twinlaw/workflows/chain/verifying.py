@@ -179,7 +179,7 @@ def recorded_replay(
     """
     log = timed_by_table(load_known_log(path, bound), path, table)
     replay, said = _compared(log, replay_of(log, table, path, arithmetic), table, bound, path)
-    half = None if log.half_row is None else f"{path.name}: {log.half_row.told}"
+    half = None if log.mended.half_row is None else f"{path.name}: {log.mended.half_row.told}"
     return replay, tuple(filter(None, (half, said)))
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from records.errors import BadInput
-from records.log import LogColumns, RunLog, load_log, save_log
+from records.log import RunLog, load_log, save_log
+from records.logs.columns import LogColumns
 from twinlaw.workflows.diagnose.questions import Question
 
 LONGEST_NAME = 100  # letters, of a folder: file systems take 255

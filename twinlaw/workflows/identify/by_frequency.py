@@ -27,7 +27,8 @@ from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
 from records.errors import BadInput
 from records.files import write_atomic
-from records.log import LogColumns, RunLog, load_log
+from records.log import RunLog, load_log
+from records.logs.columns import LogColumns
 from records.plant import Plant, load_plant, save_plant
 from records.quality import Quality, quality_facts
 from replay.table import timed_by_table
