@@ -111,7 +111,7 @@ def test_a_search_over_experiments_ends_with_the_truth_beside_it(method, folder,
     assert estimate["start"] == told["stages"][0]["searches"][0]["values"]["tau_gE"]
     page = (tmp_path / "report.html").read_text()
     assert "Psi_m" in page
-    assert "readings and residuals" in page
+    assert "Readings and residuals: " in page
     assert ('<th scope="col">bits</th>' in page) == (method == "genetic")
     assert re.search(rf'>{method}</td><td class="whole">[\d.e+-]+</td>', page)  # a torque's sum is not in degrees
 

@@ -95,7 +95,7 @@ def _flown(flown: LateralFlight, plots: Mapping[str, str]) -> Section:
         f"Then the lateral acceleration, carried from the accelerometer to the centre of gravity: {removed:.2g} m/s^2 rms is taken off. "
         f"The rates are smoothed at {thresholds.BANDWIDTH_rad_s:g} rad/s for it; by their stated noise that adds "
         f"{flown.noise_m_s2:.2g} m/s^2 rms. At the record's first and last reading their slope is off by up to "
-        f"{off_at_the_ends(1.0):.1%} of a motion at 1 rad/s, by {off_at_the_ends(2.0):.0%} at 2 rad/s.",
+        f"{100.0 * off_at_the_ends(1.0):.1f} % of a motion at 1 rad/s, by {100.0 * off_at_the_ends(2.0):.0f} % at 2 rad/s.",
     )
     return Section("A sweep as it was flown (Figs. 2 and 3)", sentences, (), (plots[SWEEP], plots[TRANSFER]))
 

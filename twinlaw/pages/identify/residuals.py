@@ -20,7 +20,7 @@ Index = NDArray[np.int64]
 def fit_section(title: str, stage: Estimate) -> Section:
     """One stage: a picture for each of its runs."""
     return Section(
-        f"{title[:1].upper()}{title[1:]}: readings and residuals",
+        f"Readings and residuals: {title}",
         _sentences(stage),
         (),
         tuple(_run_plot(stage, run) for run in stage.runs),
