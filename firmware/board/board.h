@@ -1,7 +1,7 @@
 /*
  * What a chip gives to the main loop: two quadrature encoders, analogue inputs, two PWM outputs with direction, one serial line.
  * A file for each part below is in the family's folder, or in the chip's where chips differ: its clock, its registers in chip.h,
- * its wiring in wiring.h, its memories in link.ld.
+ * its wiring in wiring.h, its memories in records/board.py.
  */
 #ifndef BOARD_H
 #define BOARD_H

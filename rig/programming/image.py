@@ -106,7 +106,9 @@ def board_folders(board: Board) -> list[Path]:
 
 
 def linker_script(board: Board) -> CText:
-    """The chip's memories as the linker knows them, and what goes where in them."""
-    _, family, chip = board_folders(board)
-    parts = (chip / "link.ld", family / "sections.ld")
-    return CText("link.ld", "\n".join(part.read_text(encoding="utf-8") for part in parts))
+    """The chip's memories as the linker knows them, whose image it is for those who read the ELF, and what goes where."""
+    memories = {"FLASH (rx)": board.flash, "RAM (rwx)": board.ram}
+    stretches = [f"{name} : ORIGIN = {of.start:#x}, LENGTH = {of.size_bytes}" for name, of in memories.items()]
+    own = ["MEMORY {", *stretches, "}", f"_chip_{board.chip} = 1;", f"_stack_size = {board.stack_reserve_bytes};"]
+    _, family, _ = board_folders(board)
+    return CText("link.ld", "\n".join([*own, (family / "sections.ld").read_text(encoding="utf-8")]))
