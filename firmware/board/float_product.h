@@ -31,6 +31,15 @@
     "    lsrs  r1, r6, #16\n" \
     "    adds  r0, r1\n"
 
+/* b in r3, doubled, r1 places below a normal number's, as one in r1; its sign in r5 and its exponent, by so much lower, to r2. */
+#define NORMAL_B(lower) \
+    "    subs  r5, r1\n" \
+    "    adds  r2, r5\n" \
+    "    subs  r2, #" lower "\n" \
+    "    lsls  r3, r1\n" \
+    "    lsrs  r1, r3, #1\n" \
+    "    b     1b\n"
+
 /*
  * The sign takes part in the sum of the exponents and comes out right: bit 8 of it is the exclusive or, bit 9 is shifted out.
  * The product of two 24-bit significands is that of their upper 8 and lower 16 bits; X is the product >> 16. E is the product's
@@ -98,28 +107,21 @@ __asm__(".syntax unified\n"
         "    bls   32f\n"
         "    cmp   r4, #128\n"
         "    beq   21f\n"
-        /* the product is normal: the leading one of b comes to bit 23 of r1, and its exponent to r2 */
-        "13: lsrs  r5, r1, #31\n"
-        "    lsls  r5, r5, #8\n"
+        /* the product is normal: the leading one of b, at bit 16, 8 or 0 of r3 and above, comes to bit 23 of r1, and its exponent to r2 */
+        "13: lsrs  r5, r1, #23\n" /* the sign, as b has no exponent */
         "    adr   r6, .Lplaces\n"
         "    lsrs  r1, r3, #8\n"
         "    beq   15f\n"
-        "    lsrs  r1, r1, #8\n"
+        "    lsrs  r4, r3, #16\n"
         "    bne   14f\n"
+        "    ldrb  r1, [r6, r1]\n"
         "    lsls  r3, r3, #8\n"
-        "    subs  r5, #8\n"
-        "    lsrs  r1, r3, #16\n"
-        "14: ldrb  r1, [r6, r1]\n"
-        "    subs  r5, r1\n"
-        "    adds  r2, r5\n"
-        "    subs  r2, #126\n"
-        "    lsls  r3, r1\n"
-        "    lsrs  r1, r3, #1\n"
-        "    b     1b\n"
-        "15: lsls  r3, r3, #16\n"
-        "    subs  r5, #16\n"
-        "    lsrs  r1, r3, #16\n"
-        "    b     14b\n"
+        NORMAL_B("134")
+        "14: ldrb  r1, [r6, r4]\n"
+        NORMAL_B("126")
+        "15: ldrb  r1, [r6, r3]\n"
+        "    lsls  r3, r3, #16\n"
+        NORMAL_B("142")
         /* E out of range */
         "30: cmp   r4, #253\n"
         "    bge   38f\n"
@@ -165,18 +167,6 @@ __asm__(".syntax unified\n"
         "    lsls  r0, r0, #23\n"
         "    pop   {r4, r5, r6}\n"
         "    bx    lr\n"
-        /* the factor of b that the exponent of a brings to E = 0; none where the product is larger */
-        "32: movs  r5, #24\n"
-        "    subs  r5, r4\n"
-        "    movs  r6, r3\n"
-        "    lsrs  r6, r5\n"
-        "    bne   13b\n"
-        "    lsls  r3, r4\n"
-        "    movs  r4, #0\n"
-        "    lsrs  r5, r3, #1\n"
-        "    lsrs  r1, r1, #31\n"
-        "    lsls  r1, r1, #31\n"
-        "    orrs  r1, r5\n"
         /* the product is subnormal, or of the least exponent; r3 is b without its sign, doubled */
         "34: uxth  r5, r1\n"
         "    eors  r1, r0\n"
@@ -185,6 +175,22 @@ __asm__(".syntax unified\n"
         "    lsrs  r1, r3, #17\n"
         "    movs  r3, #7\n"
         "    subs  r3, r4\n"
+        "    b     33f\n"
+        /* the factor of b that the exponent of a brings to E = 0; none where the product is larger */
+        "32: movs  r5, #24\n"
+        "    subs  r5, r4\n"
+        "    movs  r6, r3\n"
+        "    lsrs  r6, r5\n"
+        "    bne   13b\n"
+        "    lsls  r3, r4\n"
+        "    eors  r1, r0\n"
+        "    lsrs  r2, r1, #31\n"
+        "    lsls  r2, r2, #31\n"
+        "    lsrs  r1, r3, #1\n"
+        "    uxth  r5, r1\n"
+        "    lsrs  r1, r3, #17\n"
+        "    movs  r3, #7\n"
+        "33:\n"
         HALVES_OF_A
         "35:\n"
         PRODUCT

@@ -1,5 +1,6 @@
 """Static bounds against the emulated board: never below what any input costs, and close to the dearest input found."""
 
+import json
 from collections.abc import Mapping
 
 import numpy as np
@@ -11,10 +12,11 @@ from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import FIRMWARE_DIR, build_firmware
 from tests.law_tables import ce150_table
+from tests.plants import stated_table
 from tests.rig.emulator.programs import FOLDER
 from tests.soak import SOAK, sampled
 from tests.verification.cycles import nasty_floats, stimuli
-from tests.verification.dearest import dearest
+from tests.verification.dearest import FOUND, Step, dearest, known
 from tests.verification.static_bound.static_programs import program
 from toolchain.host import CText
 from toolchain.target import build_image
@@ -84,12 +86,19 @@ def alone(law: Mapping[str, str]) -> bytes:
     return build_image("law-alone", sources, FOLDER / "board.ld", include_dirs=[FIRMWARE_DIR / "board"]).read_bytes()
 
 
+def test_the_bound_lies_within_a_tenth_of_a_step_that_there_is() -> None:
+    ((_, stated, _),) = json.loads(FOUND.read_text(encoding="utf-8"))
+    elf = build_firmware(generate_law(stated_table("ce150"))).elf
+    assert Step(elf).cycles(known()) == stated
+    assert stated <= static_bound(elf, "law_step").cycles_bound <= 1.1 * stated
+
+
 @pytest.mark.soak
 def test_a_search_for_the_dearest_step_stays_below_the_bound() -> None:
     """Of 100 000 steps, each a change of one that was dear."""
     table = ce150_table()
     elf = build_firmware(generate_law(table)).elf
-    assert dearest(stimuli(table, "float32", 4_000), elf, 100_000) <= static_bound(elf, "law_step").cycles_bound
+    assert dearest(stimuli(table, "float32", 4_000), elf, 100_000)[0] <= static_bound(elf, "law_step").cycles_bound
 
 
 @pytest.mark.parametrize("degree", sampled(LAW_CLOSENESS, keep=[1]))
