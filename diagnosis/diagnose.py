@@ -150,13 +150,13 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     explain often looks like yielding there: what is then found must still need them.
     """
     begun = alone_of(seen)
-    seen, again = _yielding(seen, begun.best(decisions.ASKED))
+    seen, again = _yielding(seen, begun.best(decisions.NEXT))
     if again is not None:
         further = _searched(again)
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):
             return again, further
     found = search(seen.case, seen.case.library.candidates, begun)
-    seen, again = _yielding(seen, found.fitted[: decisions.ASKED])
+    seen, again = _yielding(seen, found.fitted[: decisions.NEXT])
     if again is None:
         return seen, found
     further = _searched(again)

@@ -33,7 +33,7 @@ def by_bic(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis:
     names = [
         name
         for name, e in known.items()
-        if e.on_equations and e.repeats and not redundant(bound, e, decisions.RETUNE_WIDER)
+        if e.on_equations and e.repeats and not redundant(bound, e, decisions.ANOTHER_PLANT)
     ]
     whole = combined(bound, names)
     fits = []

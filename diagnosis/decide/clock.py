@@ -36,7 +36,7 @@ def clock_in_doubt(case: Case, nominal: Fit) -> tuple[Note, ...]:
     rate, end = _likeliest(case, usual)
     off = abs(rate - 1.0)
     gain = gain_over(case, usual, end) - _cost(rate)
-    if off > decisions.CLOCK_MOST or gain < decisions.LOGS_DOUBTED:
+    if off > _most() or gain < decisions.LOGS_DOUBTED:
         return ()
     if most_by_an_effect(on_clock(case, rate), end) > gain:
         return ()
@@ -61,7 +61,8 @@ def _likeliest(case: Case, usual: Fit) -> tuple[float, Fit]:
         if height - _worth(clocks, 1.0) < decisions.PROMISED_SHARE * decisions.LOGS_DOUBTED:
             return 1.0, usual
         near = abs(rate - _best(clocks)) < RATE_FOUND
-        if near or abs(rate - 1.0) > decisions.CLOCK_MOST + step or not _try(case, clocks, rate):
+        beyond = abs(rate - 1.0) > _most() + 1.5 * step  # the first step beyond shows whether the top lies within
+        if near or beyond or not _try(case, clocks, rate):
             break
     best = _best(clocks)
     return best, clocks[best]
@@ -95,6 +96,11 @@ def _top(clocks: Clocks, step: float) -> tuple[float, float]:
     rates = (left, best, right)
     bend, slope, here = np.polyfit(np.array(rates) - best, [_worth(clocks, rate) for rate in rates], 2)
     return (best, here) if bend >= 0.0 else (best - 0.5 * slope / bend, here - 0.25 * slope**2 / bend)
+
+
+def _most() -> float:
+    """How far off a clock may be: what gains by more is a rig that is slower or faster than its file says."""
+    return decisions.BEYOND_CHANCE * decisions.CLOCK_SD
 
 
 def _cost(rate: float) -> float:

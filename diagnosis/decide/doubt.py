@@ -110,10 +110,11 @@ def _unknowing(case: Case, best: FittedHypothesis) -> Iterator[_Objection]:
     errors = ignorance(case, best.fit.hypothesis)
     if errors:
         least = min(errors, key=lambda name: errors[name])
-        forbids = errors[least] > decisions.KNOWS_NOTHING
+        limit = 1.0 - decisions.FORMS_OFF
+        forbids = errors[least] > limit
         outcome = FORBIDS if forbids else UNCHANGED
         yield _Objection(
-            decided("knows_nothing", least, errors[least], decisions.KNOWS_NOTHING, outcome),
+            held_against("knows_nothing", least, errors[least], limit, "ratio of errors", outcome),
             Note("knows_nothing", "plant", errors) if forbids else None,
             forbids,
         )

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from diagnosis import decisions
+from diagnosis.decide.weighing import LIKELIER_THAN_NOT
 from diagnosis.decisions import held_against
 from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
@@ -185,7 +186,7 @@ def added(
     else the plant without it, as is told then."""
     told, of = holdout.score_of_plant(first), " + ".join(first.effects) or "parameters"
     longest = holdout.score_of_longest(first)
-    likely = probability > decisions.LIKELIER_THAN_NOT
+    likely = probability > LIKELIER_THAN_NOT
     least = -float(decisions.MATTERS) if likely else float(decisions.MATTERS)
     lowest = -max(float(decisions.MATTERS), decisions.SURELY * longest.sd) if likely else 0.0
     rules = (

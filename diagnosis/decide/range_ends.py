@@ -30,6 +30,7 @@ from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
 RANGE_BEFORE_ROWS = 400  # before a stand, by which the plant's state and numbers are known: time
+RANGE_BEHIND_ROWS = 30  # behind a stand, in which what an axis did unseen still shows
 Rows = NDArray[np.bool_]
 
 
@@ -62,14 +63,13 @@ class _Stand:
 def range_ends(
     bound: BoundPlant, logs: Sequence[RunLog], used: Sequence[Rows | None], names: Sequence[str]
 ) -> Iterator[RangeEnd]:
-    """The ends of ranges at which an output of the logs stood, as the plant without added effects foretells, by so many nats as RANGE_ENDS
-    asks for."""
+    """The ends of ranges at which an output of the logs stood, as the plant without added effects foretells, by PLAIN_TO_SEE nats."""
     bound = without_effects(bound)
     library = effect_library(bound)
     for extreme in _extremes(bound, logs):
         stands = _longest(logs, extreme)
         foretold = ((at, _misled(library, bound, logs[at.log], used[at.log], extreme.place, at)) for at in stands)
-        found = next(((stand, nats) for stand, nats in foretold if nats > decisions.RANGE_ENDS), None)
+        found = next(((stand, nats) for stand, nats in foretold if nats > decisions.PLAIN_TO_SEE), None)
         if found is not None:
             where = found[0].log
             yield RangeEnd(extreme.place, extreme.level, _note(extreme, logs[where], names[where], *found))
@@ -108,7 +108,7 @@ def _longest(logs: Sequence[RunLog], extreme: _Extreme) -> list[_Stand]:
         and last - first + 1 >= decisions.RANGE_STAND_ROWS
         and _is_far(values, first, last)
     ]
-    return sorted(found, key=lambda stand: stand.first - stand.last)[: decisions.ASKED]
+    return sorted(found, key=lambda stand: stand.first - stand.last)[: decisions.looked_at()]
 
 
 def _is_far(values: Array, first: int, last: int) -> bool:
@@ -117,8 +117,8 @@ def _is_far(values: Array, first: int, last: int) -> bool:
     moves = np.abs(np.diff(values))
     far = thresholds.CUT_OFF_STEPS * float(np.min(moves, initial=np.inf, where=moves > 0.0))
     sides = (
-        values[max(0, first - decisions.RANGE_BEHIND_ROWS) : first],
-        values[last + 1 : last + 1 + decisions.RANGE_BEHIND_ROWS],
+        values[max(0, first - RANGE_BEHIND_ROWS) : first],
+        values[last + 1 : last + 1 + RANGE_BEHIND_ROWS],
     )
     return all(np.max(np.abs(side - values[first]), initial=0.0, where=np.isfinite(side)) >= far for side in sides)
 
@@ -127,7 +127,7 @@ def _misled(
     library: EffectLibrary, bound: BoundPlant, log: RunLog, used: Rows | None, place: int, stand: _Stand
 ) -> float:
     """By how many nats the rows behind a stand are less likely after all was read than after all but what is at its level."""
-    rows = np.arange(max(0, stand.first - RANGE_BEFORE_ROWS), stand.last + 1 + decisions.RANGE_BEHIND_ROWS)
+    rows = np.arange(max(0, stand.first - RANGE_BEFORE_ROWS), stand.last + 1 + RANGE_BEHIND_ROWS)
     near = part(log, slice(int(rows[0]), int(rows[-1]) + 1))
     before, at_end = rows <= stand.last, log.y[rows, place] == log.y[stand.first, place]
     kept = (np.ones(len(rows), bool) if used is None else used[rows]) & (before | ~at_end)

@@ -176,9 +176,9 @@ def misplaced(asked: Asked) -> tuple[ColumnShift | None, tuple[float, ...]]:
     slips = (*asked.commands, *_one_column(len(model.inputs), len(model.outputs)))
     promised = dict(zip(slips, thread_map(asked.promised, slips), strict=True))
     commands = tuple(promised[slip] for slip in asked.commands)
-    least = decisions.PROMISED_SHARE * decisions.COLUMNS_TOLD
+    least = decisions.PROMISED_SHARE * decisions.PLAIN_TO_SEE
     likelier = sorted((slip for slip in slips if promised[slip] > least), key=lambda slip: -promised[slip])
-    ones = thread_map(asked.moved, likelier[: decisions.ASKED])
+    ones = thread_map(asked.moved, likelier[: decisions.NEXT])
     for one in sorted(ones, key=lambda one: (-one.follows, -one.gain)):
         found = _furthest(one, asked.moved)
         if is_told(found.gain):
@@ -198,7 +198,7 @@ def _unseen(commands: Sequence[float]) -> tuple[Note, ...]:
     up, down = commands
     said = (
         f"a shift of one row cannot be seen in these logs: with the commands one row up the plant follows {_better(up)}, "
-        f"one row down {_better(down)}; {float(decisions.COLUMNS_TOLD):.0f} nats would tell"
+        f"one row down {_better(down)}; {float(decisions.PLAIN_TO_SEE):.0f} nats would tell"
     )
     return (Note("rows_unseen", "inputs", {"up_nats": up, "down_nats": down}, said),)
 

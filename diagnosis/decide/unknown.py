@@ -39,7 +39,7 @@ def left_beside(by_form: FormScores, effects: Sequence[Effect]) -> float:
 
     def weight(place: str, text: str) -> float:
         if parse_class(text).kind == "limit" and _side(place) in limited:
-            return decisions.OTHER_KNEE
+            return decisions.NEGLIGIBLE_SHARE
         return decisions.SAME_PLACE if _side(place) in own else 1.0
 
     usual = np.maximum(1.0, by_form.null_gain / MEAN_GAIN)
@@ -64,7 +64,7 @@ def class_gain(by_form: FormScores, members: Sequence[int]) -> float:
     score = scores.score[chosen] * unit
     usual = np.maximum(1.0, by_form.null_gain[chosen] / MEAN_GAIN)
     cost, total = decisions.SHAPE_COST + float(np.log(len(members))), 0.0
-    for _ in range(min(decisions.MOST_FORMS, len(chosen))):
+    for _ in range(min(decisions.NEXT, len(chosen))):
         left = np.diag(gram)
         gains = np.where(left > decisions.LEAST_LEFT_SHARE, 0.5 * score**2 / np.maximum(left, 1e-12), 0.0) / usual
         best = int(np.argmax(gains))

@@ -21,6 +21,7 @@ from records.model_comparison import Candidate, ComparisonLaw, ModelComparison, 
 from records.reasons import Decision
 
 Array = NDArray[np.float64]
+LIKELIER_THAN_NOT = 0.5  # probability: likelier than all else together
 RANKED = 12  # hypotheses that are told of
 
 
@@ -158,7 +159,7 @@ def _rules(told: ModelComparison, first: Candidate | None, scale: float, explain
         held_against("told_apart", of, told.gain_nats, scale, "nats", "apart" if told.gain_nats > scale else "alike"),
         *_curve_rules(told, first, of),
         held_against("forms_left", of, told.left_nats, told.gain_nats, "nats", "counts"),
-        held_against("explained", of, explained, decisions.LIKELIER_THAN_NOT, "probability", _odds(explained)),
+        held_against("explained", of, explained, LIKELIER_THAN_NOT, "probability", _odds(explained)),
     )
 
 
@@ -176,7 +177,7 @@ def _curve_rules(told: ModelComparison, first: Candidate | None, of: str) -> tup
 
 
 def _odds(explained: float) -> str:
-    return "likelier" if explained > decisions.LIKELIER_THAN_NOT else "less likely"
+    return "likelier" if explained > LIKELIER_THAN_NOT else "less likely"
 
 
 def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
@@ -186,7 +187,7 @@ def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
         for entry in weighed.fitted
         if entry is not first
         and len(entry.effects) == len(first.effects)
-        and abs(entry.evidence - first.evidence) < decisions.ALIKE_SCALES * weighed.scale
+        and abs(entry.evidence - first.evidence) < decisions.surely_nats() * weighed.scale
     ]
     return sorted(near, key=lambda entry: abs(entry.evidence - first.evidence))[:6]
 

@@ -154,7 +154,7 @@ def moved_tail(case: Case, found: Fit) -> float:
     ]
     known = np.diag(np.linalg.pinv(found.information))[stated]
     furthest = (
-        float(np.max(np.abs(moved) / np.sqrt(np.maximum(1.0 - known, decisions.LEAST_TOLD_SHARE)), initial=0.0))
+        float(np.max(np.abs(moved) / np.sqrt(np.maximum(1.0 - known, decisions.NEGLIGIBLE_SHARE)), initial=0.0))
         - decisions.TOLERATED_MOVE
     )
     return min(1.0, len(moved) * float(mpmath.erfc(furthest / np.sqrt(2.0))))

@@ -21,6 +21,10 @@ from toolchain.host import FAST_FLAGS, build_shared, load_shared
 Array = NDArray[np.float64]
 STEP_RATIO = 1.005  # 25 steps further a rounding must still fall alike
 STEPS_APART = 1.004
+SMALLEST_STEP = (
+    0.004  # of what commands take of an input's range, and of the whole range the largest: where steps are looked for
+)
+LARGEST_STEP = 0.25
 MOMENTS = 50  # of a log, of which slopes are taken
 MOST_GAINS = 40  # by what they say for the size of their errors; of these what they gain is asked
 DECLARATIONS = """
@@ -78,7 +82,7 @@ def _asked_of(linearisation: Linearisation, column: int, size: float) -> Array:
     """The steps (k,) that an input may have: a signal that takes a hundredth of its range may still come in few steps."""
     u = np.concatenate([filter_input.u[:, column] for filter_input in linearisation.filter_inputs])
     taken = min(float(np.ptp(u)), size) or size
-    smallest, largest = decisions.SMALLEST_STEP * taken, min(decisions.LARGEST_STEP * size, taken)
+    smallest, largest = SMALLEST_STEP * taken, min(LARGEST_STEP * size, taken)
     return np.geomspace(smallest, largest, 1 + int(np.log(largest / smallest) / np.log(STEP_RATIO)))
 
 

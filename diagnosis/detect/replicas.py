@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.hypothesis import noise_of
 from diagnosis.library.reading_noise import state_of
@@ -17,6 +16,7 @@ from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
 REPLICA_SEED = 20
+REPLICAS = 48  # two moments of a Gumbel law need no more
 
 
 @dataclass(frozen=True)
@@ -39,13 +39,12 @@ def tail_of(largest: Array) -> Tail:
 
 def replicas(linearisation: Linearisation) -> Array:
     """Whitened innovations (rows, REPLICAS) of flights without gap, coefficients drawn from their spread."""
-    count = int(decisions.REPLICAS)
     rng = np.random.default_rng(REPLICA_SEED)
     flights = range(len(linearisation.filter_inputs))
     parts = thread_map(
-        lambda index: _flight(linearisation, index, count, np.random.default_rng((REPLICA_SEED, index))), flights
+        lambda index: _flight(linearisation, index, REPLICAS, np.random.default_rng((REPLICA_SEED, index))), flights
     )
-    drawn = rng.standard_normal((linearisation.slopes.shape[1], count))
+    drawn = rng.standard_normal((linearisation.slopes.shape[1], REPLICAS))
     spread = linearisation.case.spread
     return np.asarray(np.concatenate(parts) + linearisation.slopes @ (drawn if spread is None else spread @ drawn))
 

@@ -186,7 +186,7 @@ def _along(case: Case, linearisation: Linearisation, effect: Effect, way: Sequen
         if entry is None:
             continue
         found.append(entry)
-        if is_concave and entry.gain < -decisions.LEAST_GAIN:
+        if is_concave and entry.gain < -decisions.chance_nats():
             break
     return found
 

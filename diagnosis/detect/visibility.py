@@ -28,7 +28,7 @@ def hidden(case: Case, score_tests: Sequence[ScoreTest]) -> dict[str, float]:
     """By effect that would go unseen at its reference size: how many times that it could be; inf where it left no trace at all."""
     power = {entry.effect: entry.power for entry in score_tests}
     found = {
-        name: decisions.CERTAIN / max(power[name], 1e-9) if name in power else np.inf
+        name: decisions.BEYOND_CHANCE / max(power[name], 1e-9) if name in power else np.inf
         for name in judged(case, score_tests)
     }
     return {name: ratio for name, ratio in found.items() if ratio > 1.0}

@@ -18,7 +18,9 @@ from sim.effect import Effect, EffectParameter, Role
 Array = NDArray[np.float64]
 RATES_RAD_S = np.arange(0.3, 14.0, 0.05)
 APART_RAD_S = 0.3
-MOST_WAVES = 48  # a turn, that are tried: nearer ones are not told apart (WAVES_APART)
+MOST_WAVES = 48  # a turn, that are tried: nearer ones are not told apart
+WAVES_APART = 0.12  # of their logarithm: three waves of those apart
+MOST_PARTS = 5  # of a period of the motion, whose whole parts repeat with it
 
 
 class Wave(NamedTuple):
@@ -44,7 +46,7 @@ def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, 
 def _foreign(linearisation: Linearisation, speed: int, waves: Sequence[Wave]) -> tuple[Wave, ...]:
     """Those of frequencies that are not the motion's own, nor so near to one that a fit would end there."""
     end = max(float(filter_input.t_s[-1] - filter_input.t_s[0]) for filter_input in linearisation.filter_inputs)
-    near = decisions.NEAR_PERIODS * 2.0 * np.pi / end
+    near = 2.0 * np.pi / end  # nearer ones are one over so long a log
     own = [wave.number for wave in waves if _repeats(linearisation, speed, wave.number)]
     return tuple(wave for wave in waves if all(abs(wave.number - other) > near for other in own))
 
@@ -52,8 +54,7 @@ def _foreign(linearisation: Linearisation, speed: int, waves: Sequence[Wave]) ->
 def _repeats(linearisation: Linearisation, speed: int, rate: float) -> bool:
     """Whether the motion itself repeats with a frequency or with a whole part of it: what repeats alike is then rather the motion's own."""
     return (
-        max(_share(linearisation, speed, rate / part) for part in range(1, decisions.MOST_PARTS + 1))
-        > decisions.OWN_MOTION_SHARE
+        max(_share(linearisation, speed, rate / part) for part in range(1, MOST_PARTS + 1)) > decisions.OWN_MOTION_SHARE
     )
 
 
@@ -82,7 +83,7 @@ def _likely_counts(linearisation: Linearisation, target: int, waves: EffectParam
     pairs = np.arange(2 * MOST_WAVES).reshape(2, MOST_WAVES).T
     own, along = scores.gram[pairs[:, :, None], pairs[:, None, :]], scores.score[pairs]
     gains, phases = _pair_gains(own, along)
-    best = _best(np.log(fitted), gains, decisions.WAVES_APART)
+    best = _best(np.log(fitted), gains, WAVES_APART)
     return tuple(Wave(float(fitted[place]), float(phases[place])) for place in best)
 
 

@@ -25,6 +25,7 @@ from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
 LONGEST_PERIOD_S = 0.02  # between rows of a simulated experiment: no verdict hangs on it
+LOST_APART = 10.0  # standard deviations by which a hypothesis is away that cannot follow the run at all
 LEADING = 3  # hypotheses that a run is to tell apart: time
 NO_EXPERIMENT = "none of the menu"
 
@@ -46,14 +47,14 @@ class Trial:
 def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     """The run that separates most of what is undecided, with the outcome to expect; None where nothing is, or nothing can be flown."""
     ranked = zip(weighed.fitted, weighed.probabilities, strict=True)
-    likely = [(fitted, probability) for fitted, probability in ranked if probability > decisions.LEAST_AT_STAKE]
+    likely = [(fitted, probability) for fitted, probability in ranked if probability > decisions.NEGLIGIBLE_SHARE]
     leading = likely[:LEADING]
     pairs = {
         (a, b): leading[a][1] * leading[b][1]
         for a, b in combinations(range(len(leading)), 2)
         if set(leading[a][0].effects) != set(leading[b][0].effects)
     }
-    if sum(pairs.values()) < decisions.LEAST_AT_STAKE:
+    if sum(pairs.values()) < decisions.NEGLIGIBLE_SHARE:
         return None
     fitted = [fitted for fitted, _ in leading]
     period_s = period_of(case)
@@ -83,7 +84,7 @@ def _trial(
             return None
         for b in (b for one, b in pairs if one == a):
             other = missed(data, fitted[b].fit, plan, noisy)
-            z[a, b] = 2.0 * decisions.SURELY_APART if other is None else float(np.sqrt(max(other - own, 0.0)))
+            z[a, b] = LOST_APART if other is None else float(np.sqrt(max(other - own, 0.0)))
     return Trial(plan, good, z)
 
 
@@ -104,19 +105,19 @@ def _worth(trial: Trial, pairs: Mapping[tuple[int, int], float]) -> tuple[float,
     """What a trial decides, in units of the probability at stake, less its effort; then the separation itself."""
     stake = sum(pairs.values())
     decided = sum(p * _decided(trial.z[pair]) for pair, p in pairs.items()) / stake
-    cost = decisions.EFFORT * trial.plan.effort + (0.0 if trial.within_limits else decisions.NEAR_LIMITS_SHARE)
+    cost = decisions.EFFORT * (trial.plan.effort + (0.0 if trial.within_limits else 1.0))
     return decided - cost, min(trial.z.values())
 
 
 def _decided(z: float) -> float:
-    sure = z / decisions.SURELY_APART
-    return min(sure, 1.0) ** 2 + decisions.BEYOND_SURE * float(np.log10(max(sure, 1.0)))
+    """A half at what chance does; no model is so right that noise alone decides, so that more is always worth a little more."""
+    return z**2 / (z**2 + decisions.BEYOND_CHANCE**2)
 
 
 def _told(
     case: Case, best: Trial, fitted: Sequence[FittedHypothesis], pairs: Mapping[tuple[int, int], float]
 ) -> Mapping[str, Any]:
-    first = max(pairs, key=lambda pair: pairs[pair] * min(best.z[pair], decisions.SURELY_APART) ** 2)
+    first = max(pairs, key=lambda pair: pairs[pair] * _decided(best.z[pair]))
     names = [_name(entry) for entry in fitted]
     apart = best.z[first]
     split = {True: list[str](), False: list[str]()}
@@ -171,10 +172,10 @@ def _part(case: Case, column: str) -> str:
 def _floors(case: Case) -> dict[str, float]:
     """What a reader can see of each column: some encoder steps, a share of an input's range."""
     model, bound = case.library.bound.model, case.library.bound
-    found = {name: decisions.OUTPUT_FLOOR * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
+    found = {name: decisions.BEYOND_CHANCE * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
     for variable in model.inputs:
         low, high = bound.commands(variable)
-        found[str(variable)] = decisions.INPUT_FLOOR * (high - low)
+        found[str(variable)] = decisions.NEGLIGIBLE_SHARE * (high - low)
     return found
 
 

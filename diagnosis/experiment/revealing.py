@@ -45,7 +45,7 @@ def revealing_experiment(case: Case, hypothesis: Hypothesis) -> Mapping[str, Any
 
 
 def _seen(case: Case, hypothesis: Hypothesis, names: list[str]) -> int:
-    """How many effects would stand CERTAIN deviations out at their reference size, the plant's own coefficients re-tuned."""
+    """How many effects would stand BEYOND_CHANCE deviations out at their reference size, the plant's own coefficients re-tuned."""
     effects = case.library.effects
     touched = {name: {p.symbol: p.touched for p in effects[name].parameters} for name in names}
     compiled = case.library.compiled((*hypothesis.effects, *names))
@@ -58,4 +58,4 @@ def _seen(case: Case, hypothesis: Hypothesis, names: list[str]) -> int:
     own = len(case.free)
     cross = gram[:own, own:]
     left = np.diag(gram)[own:] - np.sum(cross * np.linalg.solve(gram[:own, :own] + case.known, cross), axis=0)
-    return int(np.sum(left >= decisions.CERTAIN**2))
+    return int(np.sum(left >= decisions.BEYOND_CHANCE**2))

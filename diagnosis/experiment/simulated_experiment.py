@@ -85,7 +85,7 @@ def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypoth
         locked=plan.locked,
     )
     clipped = np.any((u <= law.low) | (u >= law.high), axis=1)
-    kept = course.off.any() or np.mean(clipped) <= decisions.MOST_CLIPPED
+    kept = course.off.any() or np.mean(clipped) <= decisions.NEGLIGIBLE_SHARE
     return SimulatedExperiment(log, bool(kept and _off_the_stops(case, plan, x)))
 
 

@@ -21,6 +21,7 @@ from diagnosis.detect.signals import by_step, value_of
 from diagnosis.explain.spectra import BANDS_HZ, NO_POWER, coherence, cross_power, power
 from diagnosis.filter.kalman import Disturbances
 from diagnosis.hypothesis.hypothesis import coefficients
+from identification import thresholds
 from records.diagnosis import ErrorResponse
 
 Array = NDArray[np.float64]
@@ -38,7 +39,7 @@ def error_responses(linearisation: Linearisation) -> tuple[ErrorResponse, ...]:
             continue
         own = {u: [part[:, slot] for part in parts] for u, parts in answers.items()}
         strength = {u: sum(float(np.sum(part[:, 0] ** 2)) for part in parts) for u, parts in own.items()}
-        moving = {u: own[u] for u in own if strength[u] > decisions.LEAST_POWER_SHARE * max(strength.values())}
+        moving = {u: own[u] for u in own if strength[u] > decisions.NEGLIGIBLE_SHARE**2 * max(strength.values())}
         if moving:
             found += _of_output(
                 linearisation, output, moving, [part[:, slot] for part in _by_flight(linearisation, linearisation.w)]
@@ -61,7 +62,9 @@ def _of_output(
         own = slice(place * parts[0].shape[1], (place + 1) * parts[0].shape[1])
         at_once = [part[:, 0] for part in parts]
         read = cross_power(at_once, parts, steps_s).conj() / np.maximum(power(at_once, steps_s), NO_POWER)[:, None]
-        for band in np.flatnonzero((believed > decisions.BELIEVED) & (np.array(BANDS_HZ[:-1]) < nyquist_Hz)).tolist():
+        for band in np.flatnonzero(
+            (believed > thresholds.GOOD_COHERENCE) & (np.array(BANDS_HZ[:-1]) < nyquist_Hz)
+        ).tolist():
             error = complex(read[band] @ taps[own])
             sd = float(np.sqrt((read[band] @ covariance[own, own] @ read[band].conj()).real))
             if abs(error) > decisions.BEYOND_CHANCE * sd:

@@ -28,7 +28,7 @@ def time_map(case: Case, energy: Sequence[Array]) -> tuple[Span, ...]:
     rows = [
         Span(float(edges[i]), float(edges[i + 1]), share)
         for i, share in enumerate(shares)
-        if share > decisions.LEAST_LISTED_SHARE
+        if share > decisions.NEGLIGIBLE_SHARE
     ]
     return tuple(sorted(rows, key=lambda row: -row.share))
 
@@ -55,7 +55,7 @@ def band_map(case: Case, before: Sequence[Array], after: Sequence[Array]) -> tup
     """Shares of frequency bands in what a hypothesis takes off the innovations (rows, slots), largest first, with their coherence.
 
     A band is named where some output's coherence gamma^2 of the error with what is taken off supports it: where the random error
-    sqrt((1 - gamma^2) / (2 n gamma^2)) of the response between them (Bendat and Piersol), n frequencies averaged, is KNOWN_TO at most.
+    sqrt((1 - gamma^2) / (2 n gamma^2)) of the response between them (Bendat and Piersol), n frequencies averaged, leaves it BEYOND_CHANCE.
     """
     steps_s = [flight.step_s for flight in case.flights]
     errors, gone = _by_slot(before), _by_slot([one - other for one, other in zip(before, after, strict=True)])
@@ -64,10 +64,10 @@ def band_map(case: Case, before: Sequence[Array], after: Sequence[Array]) -> tup
         return ()
     shares = strength / strength.sum()
     found = np.max([coherence(error, part, steps_s) for error, part in zip(errors, gone, strict=True)], axis=0)
-    supported = found > 1.0 / (1.0 + 2.0 * (averages(errors[0], steps_s) - 1.0) * decisions.KNOWN_TO**2)
+    supported = found > 1.0 / (1.0 + 2.0 * (averages(errors[0], steps_s) - 1.0) / decisions.BEYOND_CHANCE**2)
     rows = [
         Band(BANDS_HZ[i], BANDS_HZ[i + 1], float(shares[i]), float(found[i]))
-        for i in np.flatnonzero(supported & (shares > decisions.LEAST_LISTED_SHARE)).tolist()
+        for i in np.flatnonzero(supported & (shares > decisions.NEGLIGIBLE_SHARE)).tolist()
     ]
     return tuple(sorted(rows, key=lambda row: -row.share))
 

@@ -103,7 +103,7 @@ def _twins(case: Case, weighed: Weighed | None) -> Iterator[Note]:
 
 
 def _imitated(score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[Note]:
-    imitated = [entry.effect for entry in score_tests if entry.absorbed > decisions.IMITATED]
+    imitated = [entry.effect for entry in score_tests if entry.absorbed > 1.0 - decisions.NEGLIGIBLE_SHARE**2]
     others = sorted(name for name in imitated if name not in chosen.effects)
     if others:
         kinds = {place: [name.split(".")[1] for name in names] for place, names in _by_place(others).items()}
@@ -113,7 +113,7 @@ def _imitated(score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Ite
 def _unseen(case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[Note]:
     """How large effects could be without being seen: a note for each place, the largest in units of its reference size first."""
     unseen = hidden(case, score_tests)
-    imitated = {entry.effect for entry in score_tests if entry.absorbed > decisions.IMITATED}
+    imitated = {entry.effect for entry in score_tests if entry.absorbed > 1.0 - decisions.NEGLIGIBLE_SHARE**2}
     if cannot_tell(case, score_tests):
         yield Note("hidden", "library", {"hidden": len(unseen), "effects": len(judged(case, score_tests))})
     said = {

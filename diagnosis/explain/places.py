@@ -27,7 +27,7 @@ def place_shares(
         found[place] += weighed.retune * share
     total = sum(found.values())
     kept = (
-        {place: share / total for place, share in found.items() if share > decisions.LEAST_PLACE_SHARE * total}
+        {place: share / total for place, share in found.items() if share > decisions.NEGLIGIBLE_SHARE * total}
         if total > 0.0
         else {}
     )

@@ -34,14 +34,14 @@ def sparse_form(by_form: FormScores, place: str, class_text: str) -> tuple[Term,
     (1)  c = G^-1 s,  cov c = G^-1,
 
     with G and s the products of the forms with one another and with the innovations, what the plant's parameters imitate taken out. It ends
-    where a term gains less than NATS_PER_TERM or adds less than FURTHER_TERM_SHARE. All terms act on the target of the first.
+    where a term gains less than TAKEN_IN or adds less than FORMS_OFF of it. All terms act on the target of the first.
     """
     chosen: list[int] = []
     total = 0.0
-    while len(chosen) < decisions.MOST_TERMS:
+    while len(chosen) < decisions.NEXT:
         members = _members(by_form, (place, class_text), chosen)
         gains = _gains(by_form, chosen, members)
-        if not len(gains) or np.max(gains) < max(decisions.NATS_PER_TERM, decisions.FURTHER_TERM_SHARE * total):
+        if not len(gains) or np.max(gains) < max(decisions.TAKEN_IN, decisions.FORMS_OFF * total):
             break
         total += float(np.max(gains))
         chosen.append(members[int(np.argmax(gains))])

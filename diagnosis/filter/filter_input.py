@@ -163,7 +163,7 @@ def _scatter(y: Array, order: int, times: float, step: float) -> float:
         return 0.0
     usual = max(1.4826 * float(np.median(change)), step)
     return (
-        float(np.mean(np.minimum(change, decisions.CLIPPED_CHANGE * usual) ** 2)) / times if step else usual**2 / times
+        float(np.mean(np.minimum(change, decisions.BEYOND_CHANCE * usual) ** 2)) / times if step else usual**2 / times
     )
 
 

@@ -25,6 +25,7 @@ from sim.effect import Effect, Role
 # the same of the axes' white noise, which may have taken their place.
 PUSH_SHARES, PUSH_TIMES_S, PUSH_LOWERS_NOISE = (0.001, 0.006, 0.03), (0.06, 0.25, 1.0, 4.0), 0.7
 READING_SIZES, READING_ROWS, READING_LOWERS_NOISE = (0.5, 2.0), (1.5, 6.0, 25.0, 100.0), (0.0, 1.5)
+NO_NOISE_SHARE = 0.02  # of the least size from which a search begins: less is none
 BEND_FACTOR = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
 Numbers = tuple[float, float]  # standard deviation, correlation time in s
@@ -50,7 +51,7 @@ def with_colours(case: Case, found: Fit, asked: Sequence[Colour]) -> Hypothesis:
     hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
     left = foretold_of(case, hypothesis)
     for colour in asked:
-        if left < decisions.COLOUR_COST:
+        if left < decisions.TAKEN_IN:
             break
         starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
         begun = likeliest(part, starts)[0]
@@ -61,7 +62,7 @@ def with_colours(case: Case, found: Fit, asked: Sequence[Colour]) -> Hypothesis:
             continue
         if part is not case:
             start, there = _likeliest(case, start, [colour], white_noise(case, start))
-        if colour.of(start) is not None and there > value + decisions.COLOUR_COST:
+        if colour.of(start) is not None and there > value + decisions.TAKEN_IN:
             hypothesis, value = start, there
             left = foretold_of(case, hypothesis)
     return hypothesis
@@ -134,11 +135,10 @@ def colours(case: Case) -> list[Colour]:
 def _pushes(case: Case) -> Iterator[Colour]:
     library = case.library
     held = set.intersection(*(set(flight.locked) for flight in case.flights))
-    longest_s = decisions.LONGEST_PUSH_SHARE * max(float(np.ptp(flight.log.t_s)) for flight in case.flights)
     for index, axis in enumerate(library.bound.model.axes):
         effect = noise_on(case, index)
         if effect is not None and axis.name not in held:
-            yield _push(effect, library.bound.model.places.axes[axis.name].torque_size, index, longest_s)
+            yield _push(effect, library.bound.model.places.axes[axis.name].torque_size, index, _longest_s(case))
 
 
 def _misreadings(case: Case) -> Iterator[Colour]:
@@ -147,7 +147,12 @@ def _misreadings(case: Case) -> Iterator[Colour]:
         place = case.library.outputs.index(name)
         if any(np.isfinite(flight.filter_input.y[:, place]).any() for flight in case.flights):
             unit = float(np.sqrt(min(flight.filter_input.single[place] for flight in case.flights)))
-            yield _misreading(name, unit, step_s)
+            yield _misreading(name, unit, (step_s, max(step_s, _longest_s(case))))
+
+
+def _longest_s(case: Case) -> float:
+    """The longest memory that such noise may have."""
+    return decisions.LONGEST_MEMORY_SHARE * max(float(np.ptp(flight.log.t_s)) for flight in case.flights)
 
 
 def _push(effect: Effect, usual: float, axis: int, longest_s: float) -> Colour:
@@ -178,12 +183,12 @@ def _push(effect: Effect, usual: float, axis: int, longest_s: float) -> Colour:
         without,
         begun,
         starts,
-        decisions.NO_NOISE_SHARE * PUSH_SHARES[0] * usual,
+        NO_NOISE_SHARE * PUSH_SHARES[0] * usual,
         (bounds.lower, upper),
     )
 
 
-def _misreading(output: str, unit: float, step_s: float) -> Colour:
+def _misreading(output: str, unit: float, times_s: tuple[float, float]) -> Colour:
     def of(hypothesis: Hypothesis) -> Numbers | None:
         noise = hypothesis.reading_noise.get(output)
         return None if noise is None else (noise.sd, noise.time_s)
@@ -200,6 +205,6 @@ def _misreading(output: str, unit: float, step_s: float) -> Colour:
     def begun(hypothesis: Hypothesis) -> Sequence[Hypothesis]:
         return [replace(hypothesis, process_noise=hypothesis.process_noise - less) for less in READING_LOWERS_NOISE]
 
-    starts = tuple((share * unit, rows * step_s) for share in READING_SIZES for rows in READING_ROWS)
-    least = decisions.NO_NOISE_SHARE * READING_SIZES[0] * unit
-    return Colour(of, put, without, begun, starts, least, (step_s, decisions.LONGEST_READING_S))
+    starts = tuple((share * unit, rows * times_s[0]) for share in READING_SIZES for rows in READING_ROWS)
+    least = NO_NOISE_SHARE * READING_SIZES[0] * unit
+    return Colour(of, put, without, begun, starts, least, times_s)

@@ -1,5 +1,6 @@
 """How probable a fitted hypothesis makes the logs: its evidence, by Laplace's method."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,6 +10,11 @@ from diagnosis import decisions
 from diagnosis.fit.gauss_newton import Fit, from_zero
 from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Role
+
+STEPS_COST = math.log(
+    800 * 8
+)  # nats: one of as many steps of an input and kinds of rounding as are tried (detect/input_steps.py)
+WAVES_COST = math.log(274)  # nats: one of as many waves (detect/waves.py)
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,10 +38,10 @@ def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     known = np.setdiff1d(np.arange(len(found.information)), [row for row, is_size in new if not is_size])
     sign, volume = np.linalg.slogdet(found.information[np.ix_(known, known)])
     supposed = [effects[name] for name in found.hypothesis.effects]
-    prior -= decisions.WAVES_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
+    prior -= WAVES_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
     rough = [p.is_size for effect in supposed for p in effect.parameters if p.rough]
-    prior -= sum(decisions.STEPS_COST if is_size else decisions.SHAPE_COST for is_size in rough)
-    prior -= decisions.COLOUR_COST * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
+    prior -= sum(STEPS_COST if is_size else decisions.SHAPE_COST for is_size in rough)
+    prior -= decisions.TAKEN_IN * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior
 
 
@@ -46,4 +52,4 @@ def as_fitted(case: Case, found: Fit) -> FittedHypothesis:
 
 def least_near(best: FittedHypothesis, nominal: FittedHypothesis) -> float:
     """The evidence above which a hypothesis may yet become the best: of 115 ends that were settled none came from further."""
-    return best.evidence - max(decisions.NEAR_BEST, decisions.CLOSE_PAIR_SHARE * (best.evidence - nominal.evidence))
+    return best.evidence - max(decisions.PLAIN_TO_SEE, decisions.NEGLIGIBLE_SHARE * (best.evidence - nominal.evidence))

@@ -24,6 +24,9 @@ from sim.effect import Role
 JITTER_SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay, scatter that is tried,
 JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
+SHARED = (
+    1.0 + 2.0 * (56.0**2 + 28.0**2 + 8.0**2 + 1.0) / FOURTH**2
+)  # of squares of fourth differences, which share readings, the variance
 DIFFERENCE_GAIN = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
 
 Array = NDArray[np.float64]
@@ -51,17 +54,18 @@ def most_shown_s(case: Case, output: str) -> float:
     place = case.library.outputs.index(output)
     found = [_roughness(flight.filter_input.t_s, flight.filter_input.read[:, place], step) for flight in case.flights]
     square, rate = np.concatenate(found, axis=1)
-    if len(rate) < decisions.LEAST_FAST_READINGS:
+    if not len(rate):
         return 0.0
     fast = rate >= np.median(rate)
     if fast.all():
         return 0.0
     more = float(np.mean(square[fast]) - np.mean(square[~fast]))
     error = float(np.hypot(*(np.std(square[half]) / np.sqrt(np.sum(half)) for half in (fast, ~fast))))
-    if more <= decisions.SURE_ROUGHNESS * error:
+    chance = decisions.BEYOND_CHANCE * float(np.sqrt(SHARED)) * error
+    if more <= chance:
         return 0.0
     faster = float(np.mean(rate[fast] ** 2) - np.mean(rate[~fast] ** 2))
-    return float(np.sqrt(DIFFERENCE_GAIN * (more + decisions.SURE_ROUGHNESS * error) / faster))
+    return float(np.sqrt(DIFFERENCE_GAIN * (more + chance) / faster))
 
 
 def scatters(case: Case, name: str) -> bool:

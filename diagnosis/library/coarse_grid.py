@@ -22,6 +22,9 @@ WINDOW = 1 << 14  # units of the widest spectrum
 FINER = 4  # each unit as many of the next
 FINEST = 8  # units: finer grids are looked for in the next unit, which shows their points apart
 ROUNDED = 2.0  # counts that the farthest count may be beside the grid: rounding and noise leave it within one
+OVERTONE = (
+    0.8  # of the highest peak: a slower one as high is the grid's own, as overtones without noise are as high as it
+)
 AS_GOOD = 1.0  # nats: frequencies that near the best are one plateau
 
 
@@ -100,7 +103,6 @@ def _peaks(counts: Counts, times: Counts, unit: int) -> list[float]:
     height = np.abs(np.fft.rfft(passes, points))
     slowest = int(decisions.MORE_THAN_ONE * points / span)
     height[:slowest] = 0.0  # of a single step between the extremes nobody knows that others are alike
-    height[height < decisions.GRID_IN_PHASE * times.sum()] = 0.0
     if unit > 1:
         height[points // FINEST :] = 0.0  # the next unit shows these better
     inner = np.flatnonzero(
@@ -108,7 +110,7 @@ def _peaks(counts: Counts, times: Counts, unit: int) -> list[float]:
     )
     ranked = inner[np.argsort(height[inner])[::-1]]
     # Overtones of a grid that is read without noise are as high as its own frequency, the lowest of them.
-    lowest = [place for place in inner if height[place] > decisions.GRID_OVERTONE * height[ranked[0]]][:1]
+    lowest = [place for place in inner if height[place] > OVERTONE * height[ranked[0]]][:1]
     highest = np.array([*lowest, *ranked[:PEAKS]]) / points
     both = [f for peak in highest for f in (peak, 1.0 - peak)] if unit == 1 else highest.tolist()
     return [float(f) for f in both if f * decisions.MORE_THAN_ONE < 1.0]

@@ -82,7 +82,7 @@ class EffectLibrary:
         """Effects that name a gap and are more than another name or another value of one of the plant's own coefficients, as a re-tune
         beyond its spread would have it."""
         gaps = (n for n, effect in self.effects.items() if effect.names_a_gap and effect.repeats and not effect.copy_of)
-        return tuple(name for name in gaps if not redundant(self.bound, self.effects[name], decisions.RETUNE_WIDER))
+        return tuple(name for name in gaps if not redundant(self.bound, self.effects[name], decisions.ANOTHER_PLANT))
 
     @cached_property
     def states(self) -> tuple[str, ...]:

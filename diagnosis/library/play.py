@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.library.reading_spans import charge, less_sure
 from sim.paths.path import played
@@ -63,7 +62,7 @@ def pushing(read: Array, noise: float) -> Array:
     rows = np.arange(len(read))
     moved, coming = _moves(read, noise), _moves(read[::-1], noise)[::-1]
     changes = np.flatnonzero(moved)
-    if len(changes) < decisions.PLAY_CHANGES:
+    if len(changes) < 2:  # nothing tells how long a reading usually stands
         return np.zeros(len(read))
     before = np.searchsorted(changes, rows, side="right") - 1
     standing = rows - changes[np.maximum(before, 0)]

@@ -89,7 +89,7 @@ def first_fits(
     found: dict[frozenset[str], FittedHypothesis] = {}
     if lossy is not None and case.library.losses is not None:
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
-    least = max(decisions.LEAST_GAIN, decisions.NEARLY_AS_GOOD * score_tests[0].gain) if score_tests else 0.0
+    least = max(decisions.chance_nats(), decisions.NEGLIGIBLE_SHARE * score_tests[0].gain) if score_tests else 0.0
     jobs = _promising(nominal.fit, score_tests, least)[: decisions.SINGLES]
     jobs += _promising(nominal.fit, scored_as_stated(case, nominal.fit), least)[: decisions.SINGLES]
     begun = _begun(case, jobs, found)
@@ -121,7 +121,7 @@ def scored_as_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
     """Fit pairs and triples of `names` that grow from the single effects."""
     found, first, worth = dict(begun.found), begun.nominal, begun.worth
-    for beam in decisions.BEAM:
+    for beam in (decisions.NEXT, decisions.NEXT - 1):  # pairs, then triples
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown, worth = _grown(case, best, names, worth)
@@ -172,7 +172,7 @@ def _rules(
             "size_from_zero",
             " + ".join(entry.effects),
             min(certainties(entry.fit).values(), default=float("nan")),
-            decisions.CERTAIN,
+            decisions.BEYOND_CHANCE,
             "left out: its size may be zero" if certain and entry not in certain else "kept",
         )
         for entry in asked
@@ -181,8 +181,8 @@ def _rules(
 
 def _worth(score_tests: Sequence[ScoreTest]) -> frozenset[str]:
     """Effects that are worth a costly score test beside others."""
-    best = score_tests[: decisions.COSTLY_EFFECTS]
-    return frozenset(entry.effect for entry in best if entry.gain > decisions.LEAST_GAIN)
+    best = score_tests[: decisions.looked_at()]
+    return frozenset(entry.effect for entry in best if entry.gain > decisions.chance_nats())
 
 
 def beam_of(
@@ -208,7 +208,7 @@ def beam_of(
 
 def _same_so_far(case: Case, entry: FittedHypothesis, other: FittedHypothesis) -> bool:
     """Whether the same will grow beside both: they are twins, and these data do not tell them apart."""
-    return other.evidence - entry.evidence <= decisions.NEAR_BEST and is_twin(case, entry, other)
+    return other.evidence - entry.evidence <= decisions.PLAIN_TO_SEE and is_twin(case, entry, other)
 
 
 def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> list[Job]:
@@ -222,7 +222,7 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
     best = [entry for entry in best if entry.evidence > least_near(best[0], nominal)]
     twins = [entry for entry in best if is_twin(case, entry, best[0])]
-    asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.SETTLED_FITS], *twins])]
+    asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.NEXT], *twins])]
     for step in (refined, once_more, with_own_events):
         ends = thread_map(lambda names, step=step: step(case, found[names]), asked)
         keep_better(found, [end for end in ends if end is not None])
@@ -235,7 +235,7 @@ def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypo
     for name, certainty in certainties(fitted.fit).items():
         without = found.get(frozenset(fitted.effects) - {name})
         missed = 0.0 if without is None else fitted.evidence - without.evidence
-        if certainty < decisions.CERTAIN and (certainty < decisions.LIKELY or missed < decisions.MISSED):
+        if certainty < decisions.BEYOND_CHANCE and (certainty < decisions.SURELY or missed < decisions.TAKEN_IN):
             return False
     return True
 
@@ -277,7 +277,7 @@ def _grown(
     def asked(fitted: FittedHypothesis, worth: frozenset[str] | None) -> tuple[list[ScoreTest], list[Job]]:
         linearisation = linearised(case, fitted.fit)
         score_tests = score_effects(case, linearisation, names, worth)
-        promising = [entry for entry in score_tests if entry.gain > decisions.TAKEN_IN][: decisions.COSTLY_EFFECTS]
+        promising = [entry for entry in score_tests if entry.gain > decisions.TAKEN_IN][: decisions.looked_at()]
         return score_tests, [Job(fitted.fit, entry) for entry in unlike(linearisation, promising, decisions.NEXT)]
 
     if not best:
@@ -310,7 +310,7 @@ def _end(
     if not begun:
         return False
     best, first = max(entry.evidence for entry in begun), known.evidence
-    good = [entry for entry in begun if entry.evidence - first >= decisions.WORTH_REFINING * (best - first)]
+    good = [entry for entry in begun if entry.evidence - first >= decisions.PROMISED_SHARE * (best - first)]
     ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
     done = sorted(ends, key=lambda entry: -entry.evidence)
     found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})

@@ -38,7 +38,7 @@ def shrink(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     beside a wrong effect may do without it (a floating search: Pudil, Novovicova and Kittler 1994)."""
     size = max(len(names) for names in found)
     largest = sorted((e for e in found.values() if len(e.effects) == size > 1), key=lambda entry: -entry.evidence)
-    near = [entry for entry in largest if entry.evidence > largest[0].evidence - decisions.NEAR_BEST]
+    near = [entry for entry in largest if entry.evidence > largest[0].evidence - decisions.PLAIN_TO_SEE]
     fewer = {frozenset(entry.effects) - {name}: (entry, name) for entry in reversed(near) for name in entry.effects}
     wanted = {names: job for names, job in fewer.items() if not _is_near(found.get(names), job[0])}
     starts = thread_map(lambda names: _shrunk(case, *wanted[names], found.get(names)), list(wanted))
@@ -50,7 +50,7 @@ def _shrunk(case: Case, fitted: FittedHypothesis, name: str, known: FittedHypoth
     """The hypothesis fitted without one of its effects, from where the others were, under the white noise that is left then; None where it
     begins by far less likely than what is `known` of it."""
     start = fit(case, with_process_noise(case, _without(fitted.fit.hypothesis, name)), rounds=0)
-    if start is None or (known and start.log_likelihood < known.fit.log_likelihood - decisions.NEAR_BEST):
+    if start is None or (known and start.log_likelihood < known.fit.log_likelihood - decisions.PLAIN_TO_SEE):
         return None
     return fit(case, start.hypothesis, rounds=4)
 
@@ -90,7 +90,7 @@ def _twins_begun(
 
 
 def _is_near(known: FittedHypothesis | None, first: FittedHypothesis) -> bool:
-    return known is not None and known.evidence > first.evidence - decisions.NEAR_BEST
+    return known is not None and known.evidence > first.evidence - decisions.PLAIN_TO_SEE
 
 
 def _of_its_size(
@@ -132,7 +132,7 @@ def _exchanged(
     fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job.begun), jobs) if entry]
     keep_better(found, fitted)
     first = max((entry.evidence for entry in fitted), default=-np.inf)
-    near = [entry for entry in fitted if entry.evidence > max(first, best.evidence) - decisions.NEAR_BEST]
+    near = [entry for entry in fitted if entry.evidence > max(first, best.evidence) - decisions.PLAIN_TO_SEE]
     ends = [entry for entry in thread_map(lambda entry: refined(case, entry), near) if entry]
     keep_better(found, ends)
     end = max(ends, key=lambda entry: entry.evidence, default=best)
@@ -146,7 +146,7 @@ def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -
     if start is None:
         return []
     score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
-    least = max(decisions.TAKEN_IN, decisions.NEARLY_AS_GOOD * (fitted.fit.log_likelihood - start.log_likelihood))
+    least = max(decisions.TAKEN_IN, decisions.NEGLIGIBLE_SHARE * (fitted.fit.log_likelihood - start.log_likelihood))
     return [Job(start, entry) for entry in score_tests if entry.gain > least][: decisions.NEXT]
 
 

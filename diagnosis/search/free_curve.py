@@ -81,7 +81,9 @@ def free_curve(
     best = max(promised, default=0.0)
     order = sorted(range(len(found)), key=lambda index: -promised[index])[: decisions.NEXT]
     asked = [
-        found[index] for index in order if promised[index] >= max(decisions.WORTH_REFINING * best, decisions.LEAST_GAIN)
+        found[index]
+        for index in order
+        if promised[index] >= max(decisions.PROMISED_SHARE * best, decisions.chance_nats())
     ]
     fitted = thread_map(
         lambda curve: _fitted(case, retuned.fit, linearisation, curve, len(found), known.fit.hypothesis), asked

@@ -33,7 +33,7 @@ def with_noise_beside(
     that lead, and the likeliest without each of its effects.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
-    near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.NEAR_BEST)
+    near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.PLAIN_TO_SEE)
     noisy = ((entry, with_own) for entry in near if (with_own := _with_memory(case, entry)) is not None)
     taken = ((entry, with_own) for entry, with_own in noisy if has_memory(case, with_own.fit.hypothesis))
     best, first = next(taken, (None, None))
@@ -55,7 +55,7 @@ def _twins(
     """What is hardly told from those that now lead: between twins noise decides, so that those are asked which lacked no more than it
     gained beside the other."""
     before = {frozenset(entry.effects): entry for entry in fitted}
-    least = max(entry.evidence for entry in found) - decisions.NEAR_BEST
+    least = max(entry.evidence for entry in found) - decisions.PLAIN_TO_SEE
     for entry in (entry for entry in found if entry.evidence > least):
         own = before[frozenset(entry.effects)]
         gained = entry.evidence - own.evidence
@@ -80,11 +80,11 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
     left = _foretold(case, first)
     begun = dict(zip(asked, thread_map(lambda entry: _under_noise_of(case, entry, first), asked), strict=True))
     reach = dict(zip(asked, thread_map(lambda entry: _reach(case, begun[entry], left), asked), strict=True))
-    least = max(entry.evidence for entry in (first, *begun.values())) - decisions.NEAR_BEST
+    least = max(entry.evidence for entry in (first, *begun.values())) - decisions.PLAIN_TO_SEE
     near = [entry for entry in sorted(asked, key=lambda entry: -begun[entry].evidence) if reach[entry] >= least]
     own = _until_noise(case, near, begun, first, left, least)
     known = [first, *(end for end in own.values() if end is not None and has_memory(case, end.fit.hypothesis))]
-    least = max(least, *(entry.evidence - decisions.NEAR_BEST for entry in known))
+    least = max(least, *(entry.evidence - decisions.PLAIN_TO_SEE for entry in known))
     rest = [entry for entry in near if entry not in own and reach[entry] >= least]
     found = thread_map(lambda entry: _own_noise(case, entry, begun[entry], known, left, least), rest)
     own |= zip(rest, found, strict=True)
@@ -172,7 +172,7 @@ def _in_reach(
 
     reach = dict(zip(others, thread_map(promised, others), strict=True))
     near = [entry for entry in others if max(reach[entry]) >= least]
-    furthest = [sorted(near, key=lambda entry: -reach[entry][by])[: decisions.SETTLED_FITS] for by in range(2)]
+    furthest = [sorted(near, key=lambda entry: -reach[entry][by])[: decisions.NEXT] for by in range(2)]
     return list(dict.fromkeys([*near[:1], *furthest[0], *furthest[1]]))
 
 

@@ -82,7 +82,7 @@ def changes_names(
     Beside these very names they must gain a share of what these gain over the plant alone."""
     if there.beside is None or set(there.beside.effects) != set(best.effects) or not best.effects:
         return there.beside is not None, ()
-    gain, least = there.beside.evidence - best.evidence, decisions.NEARLY_AS_GOOD * (best.evidence - plain.evidence)
+    gain, least = there.beside.evidence - best.evidence, decisions.NEGLIGIBLE_SHARE * (best.evidence - plain.evidence)
     outcome = "all is sought anew" if gain > least else "no name changes"
     return gain > least, (held_against("yields_anew", " + ".join(best.effects), gain, least, "nats", outcome),)
 
@@ -152,7 +152,7 @@ def _likeliest(case: Case, hypothesis: Hypothesis, ways: Sequence[Effect], value
 def _begun(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> Hypothesis | None:
     """The likelier of two sizes of a way with its own noise; None where both are far less likely than `value` as the noise was."""
     start, reached = likeliest(case, _tried(hypothesis, effect))
-    return with_process_noise(case, start) if reached > value - decisions.NEAR_BEST else None
+    return with_process_noise(case, start) if reached > value - decisions.PLAIN_TO_SEE else None
 
 
 def _tried(hypothesis: Hypothesis, effect: Effect) -> list[Hypothesis]:

@@ -66,16 +66,16 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
     """The likeliest re-tune beyond the stated spread; None where no number leaves it.
 
     What the logs pull at most is set free, one number after another, as what a single one did is shared out among all that do nearly the
-    same. Its spread is taken RETUNE_WIDER times as wide, or as wide as the logs alone pull it: a wider one costs evidence.
+    same. Its spread is taken ANOTHER_PLANT times as wide, or as wide as the logs alone pull it: a wider one costs evidence.
     """
     found: list[Retune] = []
     at, wider = nominal, dict[int | str, float]()
-    while len(wider) < decisions.RETUNE_MOST:
+    while len(wider) < decisions.NEXT:
         rest = (entry for entry in _stated_numbers(case, at) if entry.of not in wider)
         furthest = max(rest, key=lambda entry: entry.pull, default=None)
         if furthest is None or furthest.pull <= decisions.BEYOND_CHANCE:
             break
-        wider[furthest.of] = max(float(decisions.RETUNE_WIDER), abs(furthest.alone))
+        wider[furthest.of] = max(float(decisions.ANOTHER_PLANT), abs(furthest.alone))
         ends = [_within(case, start, dict(wider)) for start in (at.hypothesis, _alone(at, furthest))]
         best = max((end for end in ends if end is not None), key=lambda end: end.score, default=None)
         if best is None:
@@ -137,7 +137,7 @@ def _told(case: Case, stated: Fit, explained: float, wider: Collection[int | str
     told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in numbers))
     where = [*(places_of(case, name) for name in parameters), *([entry.effect.split(".")[0]] for entry in numbers)]
     distances = np.append(theta[far], away(stated.hypothesis, numbers)[len(theta) :])
-    score = explained - decisions.RETUNE_NATS * len(told)
+    score = explained - decisions.chance_nats() * len(told)
     return Retune(FittedHypothesis((), stated, explained), told, _shares(where, distances), float(score))
 
 

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import decisions
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
-from diagnosis.validate.prediction import settled_after_s
+from diagnosis.validate.prediction import WINDOW_S, settled_after_s
 from diagnosis.validate.simulated import Flown
 from records.diagnosis import ClosedLoop
 from records.log import RunLog
@@ -169,12 +168,12 @@ def _summary(case: Case, flown: Sequence[Reflown]) -> ClosedLoop:
 
 
 def _astray(entry: Reflown, variant: str, outputs: int) -> bool:
-    """Whether a flight was lost, or further from the log than the log's own range for more than ASTRAY_S."""
+    """Whether a flight was lost, or further from the log than the log's own range for more than a window."""
     error = entry.errors[variant][:, :outputs]
     step_s = float(np.median(np.diff(entry.t_s)))
     far = np.any(np.abs(error) > entry.reach[:outputs], axis=1)
     lost = entry.present & ~np.isfinite(entry.errors[variant][:, -1])
-    return bool(lost.any() or far.sum() * step_s > decisions.ASTRAY_S)
+    return bool(lost.any() or far.sum() * step_s > WINDOW_S)
 
 
 def _numbers(t_s: Array) -> NDArray[np.int64]:

@@ -27,7 +27,7 @@ def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     for place, name in enumerate(outputs):
         floor = case.flights[0].filter_input.single[case.library.outputs.index(name)]
         known = np.isfinite(own[:, place])
-        if known.any() and (change := float(np.mean(still[known, place]))) > decisions.MOVES_FLOORS**2 * floor:
+        if known.any() and (change := float(np.mean(still[known, place]))) > decisions.BEYOND_CHANCE**2 * floor:
             found[name] = float(np.sqrt(np.mean(own[known, place]) / change))
     return found
 

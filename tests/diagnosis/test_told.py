@@ -57,7 +57,7 @@ def test_a_model_predicts_its_own_log_within_a_few_floors() -> None:
 
 def test_notes_are_records_and_each_kind_has_its_sentence() -> None:
     case, fitted = plain_linearisation().case, plain_fit()
-    quiet = [ScoreTest(name, {}, 0.0, 0.0, 0.999, 1.0) for name in case.library.candidates]
+    quiet = [ScoreTest(name, {}, 0.0, 0.0, 0.9995, 1.0) for name in case.library.candidates]
     found = notes_of(case, quiet, fitted, None)
     assert {"imitated", "hidden"} <= {note.kind for note in found}
     assert all(sentences(found))
@@ -156,7 +156,7 @@ def test_a_doubt_about_rows_goes_where_an_effect_is_told_that_explains_it(monkey
 
 def test_a_small_gap_that_nothing_explains_does_not_stand_and_keeps_its_chance() -> None:
     small = seen()
-    small = replace(small, detection=replace(small.detection, p=4e-5, largest=30.0, moved=False))
+    small = replace(small, detection=replace(small.detection, p=4e-5, largest=20.0, moved=False))
     weighed = Weighed((), (), 0.66, 0.34, 10.0, ahead_nats=3.0)
     result = Judged(object(), None, None, weighed, small.retuned, None, ())  # type: ignore[arg-type]
     after, left_by = of_consequence(small, result)

@@ -58,7 +58,7 @@ def test_a_limit_is_tried_beyond_one_that_cuts_noise_alone_and_loses() -> None:
     linearisation = linearised(case, plain_fit(case))
     start = linearisation.fit.hypothesis
     milder = likelihood_of(case, start.with_effects({"input.slew_limit": {"r": 5.55}}))
-    assert milder < linearisation.fit.log_likelihood - decisions.LEAST_GAIN
+    assert milder < linearisation.fit.log_likelihood - decisions.chance_nats()
     (found,) = score_effects(case, linearisation, ["input.slew_limit"])
     assert found.values["r"] == pytest.approx(2.59)
-    assert found.gain > decisions.LEAST_GAIN
+    assert found.gain > decisions.chance_nats()

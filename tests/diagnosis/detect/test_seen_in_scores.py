@@ -97,8 +97,8 @@ def test_data_cannot_tell_where_most_of_the_library_would_go_unseen() -> None:
     assert hidden(case, loud) == {}
     assert not cannot_tell(case, loud)
     quiet = [replace(entry, power=1.0) for entry in loud]
-    # Truth: a size is certain at 3.5 sd, so what scores 1 at its reference size would have to be 3.5 times as large.
-    assert set(hidden(case, quiet).values()) == {3.5}
+    # Truth: a size is certain at 3 sd, so what scores 1 at its reference size would have to be 3 times as large.
+    assert set(hidden(case, quiet).values()) == {3.0}
     assert cannot_tell(case, quiet)
     assert judged(case, loud) == list(case.library.candidates)
     assert all(ratio == np.inf for ratio in hidden(case, []).values())

@@ -104,4 +104,4 @@ def test_a_torque_that_stays_for_longer_than_a_share_of_the_longest_log_is_no_no
     start = nominal_hypothesis(case, -2.0).with_effects({gust.name: {size: 1e-4, time: 0.5}})
     longest_s = max(log.t_s[-1] - log.t_s[0] for log in logs)
     found = coloured_noise_of(case, start).effects[gust.name]
-    assert found[time] == pytest.approx(decisions.LONGEST_PUSH_SHARE * longest_s)
+    assert found[time] == pytest.approx(decisions.LONGEST_MEMORY_SHARE * longest_s)

@@ -14,7 +14,7 @@ from tests.diagnosis.conftest import Fly
 from tests.soak import SOAK, sampled
 
 DRAWS = 1000 if SOAK else 300
-AGREE_NATS = 0.3  # hypotheses as many effects are alike to 3 and more (ALIKE_SCALES)
+AGREE_NATS = 0.3  # hypotheses as many effects are alike to 3 and more (surely_nats)
 Effects = dict[str, dict[str, float]]
 RUBS: Effects = {"arm.coulomb": {"b": 0.0004}}
 OF_AN_ARM: list[Effects] = [

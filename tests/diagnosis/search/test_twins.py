@@ -68,7 +68,7 @@ def lagging() -> Case:
 
 
 def beside_noise(case: Case, fitted: Sequence[FittedHypothesis]) -> list[FittedHypothesis]:
-    """With noise beside names that gain little beyond the plant alone, so that what is near the likeliest is within NEAR_BEST."""
+    """With noise beside names that gain little beyond the plant alone, so that what is near the likeliest is within PLAIN_TO_SEE."""
     nominal = replace(named(), evidence=max(entry.evidence for entry in fitted))
     return with_noise_beside(case, fitted, nominal)
 
@@ -165,7 +165,7 @@ def test_a_twin_that_was_found_better_is_kept() -> None:
     case = rubbing()
     rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
     known = supposed(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
-    known = replace(known, evidence=rub.evidence - decisions.NEAR_BEST - 1.0)
+    known = replace(known, evidence=rub.evidence - decisions.PLAIN_TO_SEE - 1.0)
     found = {frozenset(entry.effects): entry for entry in (rub, known)}
     (again,) = [entry for entry in fit_twins(case, found, rub) if entry.effects == known.effects]
     assert again.evidence < known.evidence
@@ -214,10 +214,10 @@ def test_noise_is_sought_beside_what_it_could_bring_near_as_parameters_come_back
     (noisy,) = beside_noise(late, [sensor])
     (fitted,) = with_noise_of(late, [rub], noisy)
     gain = fitted.evidence - rub.evidence
-    assert gain > decisions.NEAR_BEST
+    assert gain > decisions.PLAIN_TO_SEE
     with decisions.changed("PARAMETERS_BACK", 0.0):  # whatever its own innovations foretell
         for short, asked in ((0.5, True), (1.5, False)):
-            entry = replace(rub, evidence=noisy.evidence - short * gain - decisions.NEAR_BEST)
+            entry = replace(rub, evidence=noisy.evidence - short * gain - decisions.PLAIN_TO_SEE)
             found = {one.effects for one in beside_noise(late, [sensor, entry])}
             assert (rub.effects in found) is asked
 
@@ -228,8 +228,8 @@ def test_where_the_likeliest_takes_none_noise_is_sought_beside_no_other() -> Non
     drive, pull = supposed(case, LAG), supposed(case, {"arm.offset_force": {"offset": 1e-5}})
     runs = [passes(case, entry.fit.hypothesis) for entry in (pull, drive)]
     promised = float(np.subtract(*(foretold_nats(run) for run in runs if run is not None)))
-    assert decisions.PARAMETERS_BACK * promised > 1.5 * decisions.NEAR_BEST
-    entry = replace(pull, evidence=drive.evidence - 1.5 * decisions.NEAR_BEST)
+    assert decisions.PARAMETERS_BACK * promised > 1.5 * decisions.PLAIN_TO_SEE
+    entry = replace(pull, evidence=drive.evidence - 1.5 * decisions.PLAIN_TO_SEE)
     assert beside_noise(case, [drive, entry]) == []
 
 
@@ -251,8 +251,8 @@ def test_own_noise_is_not_sought_beside_what_stays_out_of_reach_under_noise_that
     # could lead no other is sought, in reach another may be likelier and is never less.
     sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
     (noisy,) = beside_noise(late, [drive])
-    (shared,) = with_noise_of(late, [sensor], noisy)
     with decisions.changed("TAKEN_IN", 1e-9):  # whatever little its innovations promise
+        (shared,) = with_noise_of(late, [sensor], noisy)
         out = _own_noise(late, sensor, sensor, [noisy], 0.0, least=shared.evidence + 1e6)
         near = _own_noise(late, sensor, sensor, [noisy], 0.0, least=-np.inf)
     assert out is not None

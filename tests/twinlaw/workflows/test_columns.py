@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis import decisions
+from diagnosis.decide.columns import COLUMNS_ROWS
 from records.errors import BadInput
 from tests.diagnosis.arm import arm, arm_log
 from tests.replay.firmware_flights import own, plant, rows_of
@@ -19,7 +19,7 @@ def test_of_a_long_log_the_rows_in_which_its_outputs_travel_most_are_looked_at()
     y[:900], y[400] = y[900], np.nan  # at rest at first
     part = where_most_moves(replace(log, y=y))
     assert 8.9 <= part.t_s[0] <= 20.0
-    assert len(part.t_s) == decisions.COLUMNS_ROWS
+    assert len(part.t_s) == COLUMNS_ROWS
     assert where_most_moves(part) is part
 
 

@@ -40,28 +40,28 @@ def test_changes_are_counted_by_case_and_shares_by_the_cases_where_they_count(tm
     assert (back.failed, back.right_first, back.place) == (3, -0.5, -0.5)
     same = change(tmp_path / "cases", tmp_path / "new", tmp_path / "new")
     assert same.size == (0, 0.0)
-    shown = rows([Found(Trial("BEAM", 1.4), found)])[0]
-    assert shown == ("BEAM", "1.4", "4 3", "hypotheses", "2", "2", "+0.000", "+0.000", "+1.000", "0")
-    assert facts([Found(Trial("BEAM", 1.4), found)])[0]["value"] == [4, 3]
+    shown = rows([Found(Trial("REST_SHARES", 1.4), found)])[0]
+    assert shown == ("REST_SHARES", "1.4", "0 0.7", "shares of the rest", "2", "2", "+0.000", "+0.000", "+1.000", "0")
+    assert facts([Found(Trial("REST_SHARES", 1.4), found)])[0]["value"] == [0.0, pytest.approx(0.7)]
 
 
 def test_all_constants_are_tried_but_those_that_cannot_be_another() -> None:
     trials, untried = trials_of((), (0.7, 1.4))
     assert {trial.constant for trial in trials} | set(untried) == {name for name, _ in deciding(vars(decisions))}
     assert all("the same" in reason or name in read_at_load() for name, reason in untried.items())
-    assert trials_of(("COSTLY_EFFECTS",), (1.01, 1.4))[0] == [Trial("COSTLY_EFFECTS", 1.4)]
+    assert trials_of(("SINGLES",), (1.01, 1.4))[0] == [Trial("SINGLES", 1.4)]
     with pytest.raises(BadInput, match="write ALARM"):
         trials_of(("alarms",), (0.7,))
 
 
 def test_what_was_read_when_the_diagnosis_was_loaded_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
-    def late(most: int = decisions.BEAM[0], least: float = decisions.CERTAIN) -> float:
+    def late(most: int = decisions.NEXT, least: float = decisions.SURELY) -> float:
         return most * least
 
     monkeypatch.setitem(sys.modules, "diagnosis.of_this_test", SimpleNamespace(late=late, own=decisions.SINGLES))
-    assert {"CERTAIN", "SINGLES"} <= read_at_load()
-    assert "BEAM" not in read_at_load()
-    assert "read once" in trials_of(("CERTAIN",), (0.7,))[1]["CERTAIN"]
+    assert {"SURELY", "SINGLES"} <= read_at_load()
+    assert "EFFORT" not in read_at_load()
+    assert "read once" in trials_of(("SURELY",), (0.7,))[1]["SURELY"]
 
 
 @pytest.mark.parametrize("factor", ["1", "0", "-2", "inf", "much"])

@@ -2,7 +2,7 @@
 
 from math import degrees
 
-from diagnosis import decisions
+from identification import thresholds
 from records.diagnosis import Diagnosis, ErrorResponse
 from records.text.uncertain import with_sd
 from twinlaw.pages.diagnose.words import shown
@@ -22,8 +22,8 @@ def answers_section(diagnosis: Diagnosis) -> Section | None:
         (
             "By how much a reading answers a command otherwise than the re-tuned model says, as a share of the model's own answer. "
             "At a phase about 0 deg the rig answers more strongly, about 180 deg more weakly, about -90 deg later.",
-            f"Only where the commands account for more than {100 * decisions.BELIEVED:.0f} % of a reading's error, by its coherence with "
-            "them.",
+            f"Only where the commands account for more than {100 * thresholds.GOOD_COHERENCE:.0f} % of a reading's error, by its coherence "
+            "with them.",
         ),
         (Table(rows, ("answer of", "to", "between", "differs by", "phase", "coherence")),),
     )

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis import decisions
 from diagnosis.decide.clock import clock_in_doubt
+from diagnosis.decide.columns import COLUMNS_ROWS
 from diagnosis.decide.range_ends import range_ends, within_ranges
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.wiring import demand_wiring
@@ -70,7 +70,7 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note,
 
 def where_most_moves(log: RunLog) -> RunLog:
     """The rows in which the outputs travel most, as many as a diagnosis looks at to doubt the columns."""
-    rows = int(decisions.COLUMNS_ROWS)
+    rows = COLUMNS_ROWS
     if len(log.t_s) <= rows:
         return log
     y = log.y[:, np.isfinite(log.y).any(axis=0)]
