@@ -48,16 +48,22 @@ def timing(log: RunLog) -> Timing:
     period_s = _slope(samples, t_s)
     jitter_s = (steps - counted * period_s)[counted == by_time]
     jitter_s = jitter_s if jitter_s.size else np.zeros(1)
+    jitter_rms_s = float(np.sqrt(np.mean(jitter_s**2)))
     return Timing(
         rows=n,
         duration_s=duration_s,
         period_s=period_s,
         period_error_ppm=(period_s / stated_s - 1.0) * 1e6,
-        jitter_rms_s=float(np.sqrt(np.mean(jitter_s**2))),
+        jitter_rms_s=jitter_rms_s,
         jitter_max_s=float(np.abs(jitter_s).max()),
-        missing_by_time=int(np.sum(np.maximum(by_time - 1.0, 0.0))),
+        missing_by_time=int(np.sum(by_time[_are_gaps(steps, period_s, jitter_rms_s)] - 1.0)),
         missing_by_seq=None if log.seq is None else int(np.sum(np.maximum(by_seq - 1, 0))),
     )
+
+
+def _are_gaps(steps: Array, period_s: float, jitter_rms_s: float) -> Rows:
+    """Steps (n,) from row to row that are longer than late and early stamps make them: samples are missing there."""
+    return np.asarray(steps > thresholds.GAP_PERIODS * period_s + thresholds.GAP_JITTER * jitter_rms_s)
 
 
 def _without_pauses(log: RunLog) -> Array:
@@ -171,7 +177,7 @@ def _not_rising(log: RunLog, name: str, column: str, values: Array) -> Iterator[
 
 def _missing(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
     steps = np.diff(_without_pauses(log))
-    gaps = np.flatnonzero(steps > thresholds.GAP_PERIODS * found.period_s)
+    gaps = np.flatnonzero(_are_gaps(steps, found.period_s, found.jitter_rms_s))
     if gaps.size and found.missing_by_time:
         first, longest = gaps[0], gaps[np.argmax(steps[gaps])]
         sentence = (

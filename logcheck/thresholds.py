@@ -183,6 +183,9 @@ LEAST_ROWS = Count(
     "fewer rows tell nothing; how long they last does not matter: half a second is a long run of a small motor",
 )
 GAP_PERIODS = Limit(1.5, "sample periods", "a longer step has rows missing")
+GAP_JITTER = Limit(
+    4.0, "times the jitter", "more than that is added to a step: what is longer is no late row and no early one"
+)
 SLOW_S = Limit(1.0, "s", "rows of a plant with an axis that are so far apart are remarked on")
 STANDING_S = Limit(
     5.0,

@@ -56,6 +56,11 @@ def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
     late_s = np.random.default_rng(4).uniform(0.0, 1e-3, 2001)
     jittered = examined(replace(log, t_s=log.t_s + late_s))
     assert kinds(jittered) == {"jitter"}
+    # Truth: rows up to 4 ms early or late, all of them there; and rows up to 1 ms late, of which one is not.
+    rough = replace(log, t_s=log.t_s + np.random.default_rng(6).uniform(-4e-3, 4e-3, 2001))
+    assert kinds(examined(rough)) == {"jitter"}
+    one_less = examined(rows_of(replace(log, t_s=log.t_s + late_s), np.arange(2001) != 700))
+    assert (kinds(one_less), one_less.logs[0].timing.missing_by_time) == ({"jitter", "missing_rows"}, 1)
     assert jittered.logs[0].timing.jitter_rms_s == pytest.approx(1e-3 * np.sqrt(1.0 / 6.0), rel=0.05)
     # Truth: rows 10 ms apart on average, each late by its own 2 ms rms: 2000 of these move the mean by 4500 ppm rms, and not the clock.
     steps_s = 0.01 + np.random.default_rng(5).uniform(-1.0, 1.0, 2000) * 2e-3 * np.sqrt(3.0)
