@@ -277,7 +277,7 @@ def surely_nats() -> float:
     return -math.log(math.erfc(SURELY / math.sqrt(2.0)))
 
 
-def looked_at() -> int:
+def most_asked() -> int:
     """How many of what promises most are looked at more closely than all are, of which SINGLES are fitted."""
     return 2 * SINGLES
 

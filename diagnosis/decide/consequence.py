@@ -28,9 +28,9 @@ def foreseen(logs: FittedLogs, explanations: Explanations) -> dict[FittedHypothe
     (`FittedLogs.readings`).
 
     What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off. Those with
-    less evidence than the `looked_at` most evident are not asked.
+    less evidence than the `most_asked` most evident are not asked.
     """
-    asked = sorted(explanations.named, key=lambda entry: -entry.evidence)[: decisions.looked_at()]
+    asked = sorted(explanations.named, key=lambda entry: -entry.evidence)[: decisions.most_asked()]
     fewer = [other for entry in asked for other in one_less(entry, explanations.named)]
     asked = list(dict.fromkeys([*asked, *fewer, *([] if explanations.beyond is None else [explanations.beyond])]))
     plain, readings = explanations.nominal.fit.hypothesis, logs.readings

@@ -108,7 +108,7 @@ def _longest(logs: Sequence[RunLog], extreme: _Extreme) -> list[_Stand]:
         and last - first + 1 >= decisions.RANGE_STAND_ROWS
         and _is_far(values, first, last)
     ]
-    return sorted(found, key=lambda stand: stand.first - stand.last)[: decisions.looked_at()]
+    return sorted(found, key=lambda stand: stand.first - stand.last)[: decisions.most_asked()]
 
 
 def _is_far(values: Array, first: int, last: int) -> bool:

@@ -181,7 +181,7 @@ def _rules(
 
 def _worth(score_tests: Sequence[ScoreTest]) -> frozenset[str]:
     """Effects that are worth a costly score test beside others."""
-    best = score_tests[: decisions.looked_at()]
+    best = score_tests[: decisions.most_asked()]
     return frozenset(entry.effect for entry in best if entry.gain > decisions.chance_nats())
 
 
@@ -277,7 +277,7 @@ def _grown(
     def asked(fitted: FittedHypothesis, worth: frozenset[str] | None) -> tuple[list[ScoreTest], list[Job]]:
         linearisation = linearised(case, fitted.fit)
         score_tests = score_effects(case, linearisation, names, worth)
-        promising = [entry for entry in score_tests if entry.gain > decisions.TAKEN_IN][: decisions.looked_at()]
+        promising = [entry for entry in score_tests if entry.gain > decisions.TAKEN_IN][: decisions.most_asked()]
         return score_tests, [Job(fitted.fit, entry) for entry in unlike(linearisation, promising, decisions.NEXT)]
 
     if not best:
