@@ -12,7 +12,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decide.holdout import Holdout
-from diagnosis.decide.weighing import Explanations, beyond_spread
+from diagnosis.decide.weighing import Explanations, beyond_spread, read_off
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -24,8 +24,8 @@ from records.reasons import Decision
 @dataclass(frozen=True)
 class Said:
     """What logs say of one effect in one output: `nats` by which the hypothesis predicts better than without it, with their standard
-    error `sd`, and `whole`, by which it does so better than the plant alone but for a grid that readings show, of which no form can be a
-    little off; of so many `readings`."""
+    error `sd`, and `whole`, by which it does so better than what is read off the logs, a sensor's steps, of which no form can be a little
+    off, or the plant alone; of so many `readings`."""
 
     nats: float
     sd: float
@@ -53,26 +53,30 @@ def shares_of(
     plain = explanations.nominal.fit.hypothesis
 
     def said(entry: FittedHypothesis, fewer: FittedHypothesis) -> list[list[Said]]:
-        one, other = (logs.errors_beside(each.fit.hypothesis, plain) for each in (entry, fewer))
-        fitted = [_said(logs.readings, one, other, logs.errors(plain))]
-        return fitted if holdout is None else [*fitted, *_held_out(holdout, entry, fewer)]
+        read = read_off(explanations, entry)
+        fitted = _said(
+            logs.readings, *(logs.errors_beside(each.fit.hypothesis, plain) for each in (entry, fewer, read))
+        )
+        return [fitted] if holdout is None else [fitted, *_held_out(holdout, entry, fewer, read)]
 
     return dict(zip(pairs, thread_map(said, *zip(*pairs, strict=True)), strict=True)) if pairs else {}
 
 
-def _held_out(holdout: Holdout, entry: FittedHypothesis, fewer: FittedHypothesis) -> list[list[Said]]:
+def _held_out(
+    holdout: Holdout, entry: FittedHypothesis, fewer: FittedHypothesis, read: FittedHypothesis
+) -> list[list[Said]]:
     """What a hold-out says; nothing where it lacks a part of the hypothesis, that happened in other logs: what it did there is an error
     beside which no other part shows."""
     if set(entry.effects) - set(holdout.foreseen(entry.fit.hypothesis).effects):
         return []
-    one, other, plain = (holdout.errors_foreseen(each.fit.hypothesis) for each in (entry, fewer, holdout.base))
-    return [_said(holdout.readings, one, other, plain)]
+    rival = read if read.effects else holdout.base
+    return [_said(holdout.readings, *(holdout.errors_foreseen(each.fit.hypothesis) for each in (entry, fewer, rival)))]
 
 
-def _said(readings: int, one: Errors, other: Errors, plain: Errors) -> list[Said]:
+def _said(readings: int, one: Errors, other: Errors, rival: Errors) -> list[Said]:
     return [
         Said(readings * further.gain, readings * further.sd, readings * whole.gain, readings)
-        for further, whole in zip(by_output(one, other), by_output(replace(one, grid=plain.grid), plain), strict=True)
+        for further, whole in zip(by_output(one, other), by_output(replace(one, grid=rival.grid), rival), strict=True)
     ]
 
 

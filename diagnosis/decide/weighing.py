@@ -132,7 +132,7 @@ def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, flo
             for entry in explanations.named
         ),
         gain_nats=max(best - nominal.evidence, 0.0),
-        formed_nats=max(found - _read_off(explanations, first).evidence, 0.0),
+        formed_nats=max(found - read_off(explanations, first).evidence, 0.0),
         left_nats=explanations.left_nats,
         parameters_nats=None if explanations.retune is None else explanations.retune - nominal.evidence,
         curve_nats=None if curve is None else curve.evidence - nominal.evidence + found - first.evidence,
@@ -147,7 +147,7 @@ def beyond_spread(entry: FittedHypothesis) -> float:
     return 0.5 * float(beyond @ beyond)
 
 
-def _read_off(explanations: Explanations, first: FittedHypothesis) -> FittedHypothesis:
+def read_off(explanations: Explanations, first: FittedHypothesis) -> FittedHypothesis:
     """That of `first` which is read off the logs, a sensor's steps, where it was tried alone: no form of it can be a little off."""
     exact = {name for name in first.effects if explanations.library.effects[name].shown_in_readings}
     return next((entry for entry in explanations.named if set(entry.effects) == exact), explanations.nominal)
