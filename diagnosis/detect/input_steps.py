@@ -21,10 +21,8 @@ from toolchain.host import FAST_FLAGS, build_shared, load_shared
 Array = NDArray[np.float64]
 STEP_RATIO = 1.005  # 25 steps further a rounding must still fall alike
 STEPS_APART = 1.004
-SMALLEST_STEP = (
-    0.004  # of what commands take of an input's range, and of the whole range the largest: where steps are looked for
-)
-LARGEST_STEP = 0.25
+# Where steps are looked for: from a share of what commands take of an input's range to a share of the whole range.
+SMALLEST_STEP, LARGEST_STEP = 0.004, 0.25
 MOMENTS = 50  # of a log, of which slopes are taken
 MOST_GAINS = 40  # by what they say for the size of their errors; of these what they gain is asked
 DECLARATIONS = """

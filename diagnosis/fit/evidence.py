@@ -11,10 +11,9 @@ from diagnosis.fit.gauss_newton import Fit, from_zero
 from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Role
 
-STEPS_COST = math.log(
-    800 * 8
-)  # nats: one of as many steps of an input and kinds of rounding as are tried (detect/input_steps.py)
-WAVES_COST = math.log(274)  # nats: one of as many waves (detect/waves.py)
+# Nats of a choice among as many as are tried: some 800 steps of an input in eight kinds of rounding (detect/input_steps.py), and as many
+# waves as detect/waves.py has rates.
+STEPS_COST, WAVES_COST = math.log(800 * 8), math.log(274)
 
 
 @dataclass(frozen=True, eq=False)

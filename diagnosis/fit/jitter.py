@@ -24,9 +24,8 @@ from sim.effect import Role
 JITTER_SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay, scatter that is tried,
 JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
-SHARED = (
-    1.0 + 2.0 * (56.0**2 + 28.0**2 + 8.0**2 + 1.0) / FOURTH**2
-)  # of squares of fourth differences, which share readings, the variance
+# How much more a mean of squares of fourth differences scatters, as these share readings: the sum of their squared correlations.
+SHARED = 1.0 + 2.0 * (56.0**2 + 28.0**2 + 8.0**2 + 1.0) / FOURTH**2
 DIFFERENCE_GAIN = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
 
 Array = NDArray[np.float64]

@@ -22,9 +22,8 @@ WINDOW = 1 << 14  # units of the widest spectrum
 FINER = 4  # each unit as many of the next
 FINEST = 8  # units: finer grids are looked for in the next unit, which shows their points apart
 ROUNDED = 2.0  # counts that the farthest count may be beside the grid: rounding and noise leave it within one
-OVERTONE = (
-    0.8  # of the highest peak: a slower one as high is the grid's own, as overtones without noise are as high as it
-)
+# Of the highest peak: a slower one as high is the grid's own, as overtones without noise are as high as it. It adds one that is asked.
+OVERTONE = 0.8
 AS_GOOD = 1.0  # nats: frequencies that near the best are one plateau
 
 

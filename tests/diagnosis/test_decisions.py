@@ -1,8 +1,12 @@
 """The constants that decide: few, each with its reason, each read where something is decided."""
 
+import math
 import re
 
 from diagnosis import decisions
+from diagnosis.detect.input_steps import LARGEST_STEP, SMALLEST_STEP, STEP_RATIO
+from diagnosis.detect.waves import RATES_RAD_S
+from diagnosis.fit.evidence import STEPS_COST, WAVES_COST
 from records.deciding import deciding
 from tests.test_project import ROOT
 
@@ -22,3 +26,10 @@ def test_what_follows_from_them_follows_them() -> None:
     assert abs(decisions.surely_nats() - 3.09) < 0.01
     with decisions.changed("BEYOND_CHANCE", 2.0 / 3.0):
         assert decisions.chance_nats() == 2.0
+
+
+def test_a_choice_costs_what_as_many_are_worth_as_are_tried() -> None:
+    # Truth: ln of the rates of a sine, and of the steps between the ends of their grid in eight kinds of rounding.
+    assert math.isclose(WAVES_COST, math.log(len(RATES_RAD_S)))
+    steps = math.log(LARGEST_STEP / SMALLEST_STEP) / math.log(STEP_RATIO)
+    assert abs(STEPS_COST - math.log(8 * steps)) < 0.05
