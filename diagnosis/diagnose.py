@@ -266,8 +266,8 @@ def _explanations(seen: Seen, found: _Found) -> Explanations:
     library = seen.case.library
     left = left_beside(form_scores(linearised(seen.case, best.fit)), [library.effects[name] for name in best.effects])
     named = tuple(entry for entry in fitted if entry.effects)
-    alone, evidence = (None, None) if beyond is None else (beyond.fitted, beyond.score)
-    return Explanations(named, seen.retuned, library, left, alone, evidence, found.curve)
+    alone, nats = (None, None) if beyond is None else (beyond.fitted, beyond.score)
+    return Explanations(named, seen.retuned, library, left, alone, nats, found.curve)
 
 
 def _checked(

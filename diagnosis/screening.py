@@ -12,7 +12,7 @@ from diagnosis.detect.detection import detect
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, with_commands
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory, with_memory_from
 from diagnosis.hypothesis.case import Case, make_case
@@ -74,7 +74,7 @@ def _detected(
     again = plain_beside(case, best.fit, nominal)
     if again is None:
         return _with_names(seen, names)
-    gain = evidence(again, case.library.effects) - seen.retuned.evidence
+    gain = log_evidence(again, case.library.effects) - seen.retuned.evidence
     better = gain > decisions.TAKEN_IN
     outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
@@ -90,7 +90,7 @@ def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision
     case, lossy = with_losses(case, linearisation)
     linearisation = replace(linearisation, case=case)
     score_tests = score_effects(case, linearisation, case.library.candidates)
-    retuned = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
+    retuned = FittedHypothesis((), nominal, log_evidence(nominal, case.library.effects))
     detection = detect(case, linearisation, score_tests, lossy)
     rules = (*rules, *detection.decisions, false_alarm("logs", detection.p))
     return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)

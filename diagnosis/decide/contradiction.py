@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.evidence import evidence
+from diagnosis.fit.evidence import log_evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
@@ -58,7 +58,7 @@ def parted_gain(case: Case, found: Fit) -> float:
 def parted_evidence(case: Case, found: Fit) -> float:
     """Log evidence of as many plants as there are logs, each within what is stated and none with what the others lack."""
     apart = [fit(case.with_flights([flight]), found.hypothesis, rounds=6) for flight in case.flights]
-    return sum(evidence(entry, case.library.effects) if entry else -np.inf for entry in apart)
+    return sum(log_evidence(entry, case.library.effects) if entry else -np.inf for entry in apart)
 
 
 def _own_numbers(runs: Sequence[Pass], index: int, scale: Array, before: Array, names: Sequence[str]) -> Contradiction:

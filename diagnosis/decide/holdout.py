@@ -10,7 +10,7 @@ from diagnosis import decisions
 from diagnosis.decide.weighing import LIKELIER_THAN_NOT
 from diagnosis.decisions import held_against
 from diagnosis.detect.instants import happens
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
@@ -130,7 +130,7 @@ def holdout_of(
     if found is None:
         return replace(trial, decisions=(rule,))
     notes = (Note("stated_predicts_better", "plant", {"worse": float(np.expm1(told.gain / _outputs(case)))}),)
-    base = FittedHypothesis((), found, evidence(found, training.library.effects))
+    base = FittedHypothesis((), found, log_evidence(found, training.library.effects))
     return replace(trial, base=base, notes=notes, decisions=(rule,), ways={})
 
 

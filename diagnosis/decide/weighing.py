@@ -67,7 +67,7 @@ class Explanations:
     curve: FittedCurve | None = None
     beside: Mapping[FittedHypothesis, float] = field(default_factory=dict)
 
-    def evidence(self, entry: FittedHypothesis) -> float:
+    def evidence_beside(self, entry: FittedHypothesis) -> float:
         """That of a hypothesis, alone or beside what has no name."""
         return max(entry.evidence, self.beside.get(entry, -np.inf))
 
@@ -117,14 +117,14 @@ def _comparison(explanations: Explanations, ahead: Mapping[FittedHypothesis, flo
     """All of them in nats. What effects without a name gain beside the likeliest name they would gain beside the curve."""
     least = min(ahead.values(), default=0.0)
     nominal, effects, curve = explanations.nominal, explanations.library.effects, explanations.curve
-    first = max(explanations.named, key=explanations.evidence, default=nominal)
-    found = explanations.evidence(first)
+    first = max(explanations.named, key=explanations.evidence_beside, default=nominal)
+    found = explanations.evidence_beside(first)
     best = found if explanations.retune is None else max(found, explanations.retune)
     return ModelComparison(
         candidates=tuple(
             Candidate(
                 " + ".join(entry.effects),
-                explanations.evidence(entry) - nominal.evidence,
+                explanations.evidence_beside(entry) - nominal.evidence,
                 prior_odds(entry, effects, explanations.library.frictionless, explanations.library.steps)
                 - beyond_spread(entry),
                 ahead.get(entry, least),

@@ -25,7 +25,7 @@ class FittedHypothesis:
     evidence: float
 
 
-def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
+def log_evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     """Log evidence by Laplace's method, with theta normal and sizes SIZE_SD times their reference; each shape costs SHAPE_COST, whatever
     the logs tell of it: one of which they tell nothing makes nothing likelier.
 
@@ -46,7 +46,7 @@ def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
 
 def as_fitted(case: Case, found: Fit) -> FittedHypothesis:
     """A fit with the effects that the plant file does not state, and its evidence."""
-    return FittedHypothesis(case.added(found.hypothesis.effects), found, evidence(found, case.library.effects))
+    return FittedHypothesis(case.added(found.hypothesis.effects), found, log_evidence(found, case.library.effects))
 
 
 def least_near(best: FittedHypothesis, nominal: FittedHypothesis) -> float:

@@ -95,10 +95,10 @@ def _coarser(filter_input: FilterInput, output: int, grid: float, step: float) -
     y, r = filter_input.y.copy(), filter_input.r.copy()
     y[seen, output] = filter_input.read[seen, output]
     r[seen, output] = filter_input.standing[seen, output] * filter_input.single[output]
-    evidence = grid_evidence(filter_input.read[:, output], grid, step)
+    of_grid = grid_evidence(filter_input.read[:, output], grid, step)
     plain = replace(filter_input, y=y, r=r)
     alike, each_nats = filter_input.standing[seen, output], charge(filter_input, output, grid)
-    return less_sure(plain, output, seen, alike, grid, each_nats, evidence)
+    return less_sure(plain, output, seen, alike, grid, each_nats, of_grid)
 
 
 # What a filter makes of the readings behind each kind of stage: (library, filter input, stage) -> filter input.

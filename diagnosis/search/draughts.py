@@ -14,7 +14,7 @@ import sympy
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.coloured_noise import coloured_noise_of
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, has_memory, noise_on
@@ -75,7 +75,7 @@ def _of_white(case: Case, retuned: FittedHypothesis, name: str, share: float) ->
     gusty = fit(case, as_usual.with_effects({**hypothesis.effects, name: rest}), rounds=STILL_ROUNDS)
     if quiet is None or gusty is None:
         return None
-    return Draught(FittedHypothesis((name,), gusty, evidence(gusty, case.library.effects)), as_fitted(case, quiet))
+    return Draught(FittedHypothesis((name,), gusty, log_evidence(gusty, case.library.effects)), as_fitted(case, quiet))
 
 
 def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:

@@ -19,7 +19,7 @@ from diagnosis.detect.curves import Curve, curves
 from diagnosis.detect.linearisation import Linearisation, Scores, linearised
 from diagnosis.filter.filter_input import Added
 from diagnosis.fit.coloured_noise import coloured_noise_of
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import with_memory_of
 from diagnosis.hypothesis.case import Case
@@ -158,7 +158,7 @@ def _fitted(case: Case, start: Fit, begun: Linearisation, curve: Curve, count: i
     covariance = np.asarray(np.linalg.inv(scores.gram + np.eye(len(b)) / variance), float)
     volume = float(len(b) * np.log(variance) - np.linalg.slogdet(covariance)[1])
     cost = 0.5 * float(b @ b) / variance + 0.5 * volume + decisions.SHAPE_COST + float(np.log(count))
-    return FittedCurve(curve, b, covariance, here, at, evidence(at, case.library.effects) - cost)
+    return FittedCurve(curve, b, covariance, here, at, log_evidence(at, case.library.effects) - cost)
 
 
 def _further(case: Case, reached: _Reached, curve: Curve, weights: _Weights, theta: Array) -> _Reached | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decisions import decided, held_against
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import axis_noise, with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest, likelihoods
@@ -93,7 +93,7 @@ def needed(case: Case, best: FittedHypothesis) -> bool:
         name: v for name, v in best.fit.hypothesis.effects.items() if name in best.effects or not case.added([name])
     }
     found = fit(case, with_process_noise(case, best.fit.hypothesis.with_effects(kept)), rounds=4)
-    return found is None or best.evidence > evidence(found, case.library.effects) + decisions.TAKEN_IN
+    return found is None or best.evidence > log_evidence(found, case.library.effects) + decisions.TAKEN_IN
 
 
 def _promised(case: Case, found: Fit) -> float:

@@ -9,7 +9,7 @@ import sympy
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit, Free, away, fit
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.process_noise import with_process_noise
@@ -117,7 +117,7 @@ def _within(case: Case, start: Hypothesis, wider: Mapping[int | str, float]) -> 
     found = None if found is None else fit(wide, with_process_noise(wide, found.hypothesis), rounds=6)
     if found is None:
         return None
-    return _told(case, _as_stated(case, found, wider), evidence(found, case.library.effects), wider)
+    return _told(case, _as_stated(case, found, wider), log_evidence(found, case.library.effects), wider)
 
 
 def _factors(case: Case, wider: Mapping[int | str, float]) -> Array:

@@ -12,7 +12,7 @@ from diagnosis.experiment.menu import gravity_parameters, plans
 from diagnosis.experiment.next_experiment import next_experiment
 from diagnosis.experiment.simulated_experiment import missed, outcomes, recorded, setting, simulate_experiment
 from diagnosis.experiment.stand_in import stand_in, steered
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, make_case
@@ -40,7 +40,7 @@ def as_found(case: Case, effects: Mapping[str, Mapping[str, float]]) -> FittedHy
     start = with_process_noise(case, nominal_hypothesis(case, -1.5).with_effects(effects))
     found = fit(case, start, rounds=5)
     assert found is not None
-    return FittedHypothesis(tuple(effects), found, evidence(found, case.library.effects))
+    return FittedHypothesis(tuple(effects), found, log_evidence(found, case.library.effects))
 
 
 def weighed(*fitted: FittedHypothesis) -> Weighed:

@@ -18,7 +18,7 @@ from diagnosis.experiment.revealing import revealing_experiment
 from diagnosis.explain.improved import improved_plant
 from diagnosis.explain.notes import notes_of
 from diagnosis.explain.sentences import plain_sentence, sentence, sentences, unseen_effects
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Seen
@@ -77,7 +77,7 @@ def test_notes_are_records_and_each_kind_has_its_sentence() -> None:
 
 
 def plain_fit() -> FittedHypothesis:
-    return FittedHypothesis((), plain_linearisation().fit, evidence(plain_linearisation().fit, {}))
+    return FittedHypothesis((), plain_linearisation().fit, log_evidence(plain_linearisation().fit, {}))
 
 
 def test_a_parameter_far_beyond_its_spread_is_found_alone_with_its_place() -> None:

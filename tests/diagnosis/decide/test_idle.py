@@ -164,7 +164,7 @@ def test_what_an_idle_effect_explains_row_by_row_does_not_speak_against_what_pre
     explanations = Explanations((both, rubbing, pulled), plain, pulled_case.library, 5.0)
     shares = {(both, rubbing): [[Said(40.0, SURE, 40.0, 100)]], (both, pulled): [[Said(1.0, SURE, 40.0, 100)]]}
     found, _ = without_idle(explanations, shares)
-    assert [found.evidence(entry) - at for entry in (rubbing, pulled)] == [640.0, 700.0]
+    assert [found.evidence_beside(entry) - at for entry in (rubbing, pulled)] == [640.0, 700.0]
     weighed = weigh(found, {both: 40.0, rubbing: 0.0, pulled: 39.0})
     assert weighed.fitted[0] is pulled
     assert weighed.ahead_nats == pytest.approx(39.0, abs=0.5)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.fit.evidence import evidence
+from diagnosis.fit.evidence import log_evidence
 from diagnosis.fit.gauss_newton import Fit, Free, tempered
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from sim.added_effects import library
@@ -22,8 +22,8 @@ def test_a_shape_costs_the_same_whatever_the_logs_tell_of_it(plant: BoundPlant, 
     information = np.array([[100.0, 0.0, 0.0], [0.0, 10.0, told], [0.0, told, 10.0]])
     free = (*alone.free, *(Free(effect.name, shape, 0.1) for shape in shapes))
     shaped = Fit(hypothesis, 50.0, 40.0, free, information, np.zeros(3))
-    assert evidence(shaped, {effect.name: effect}) == pytest.approx(
-        evidence(alone, {effect.name: effect}) - 2.0 * decisions.SHAPE_COST
+    assert log_evidence(shaped, {effect.name: effect}) == pytest.approx(
+        log_evidence(alone, {effect.name: effect}) - 2.0 * decisions.SHAPE_COST
     )
 
 

@@ -9,7 +9,7 @@ import pytest
 from diagnosis import decisions
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.filter.filter_input import filter_input_of
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.presliding_friction import Yielding, changes_names, needed, yielding
@@ -46,7 +46,7 @@ def plain_fit(plant: BoundPlant, log: RunLog, **stated: BoundPlant) -> tuple[Cas
     """The log as a case, and the plant as stated fitted to it."""
     case = make_case(effect_library(plant), [log], **stated)
     nominal = nominal_fit(case)
-    return case, FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
+    return case, FittedHypothesis((), nominal, log_evidence(nominal, case.library.effects))
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +122,7 @@ def test_axes_that_give_are_kept_only_where_the_logs_need_it(flown: str, request
     plain, _ = request.getfixturevalue(flown)
     taken = replace(plain, stated=GIVE, stated_sd={name: {"z_0": 0.0} for name in GIVE})
     found = nominal_fit(taken)
-    assert needed(plain, FittedHypothesis((), found, evidence(found, taken.library.effects))) is (flown == "giving")
+    assert needed(plain, FittedHypothesis((), found, log_evidence(found, taken.library.effects))) is (flown == "giving")
 
 
 @pytest.mark.soak

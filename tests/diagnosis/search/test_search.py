@@ -11,7 +11,7 @@ from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.explain.places import place_shares
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
@@ -35,7 +35,7 @@ def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> FittedHyp
     """The fit of these effects from these values."""
     found = fit(case, nominal.hypothesis.with_effects(effects))
     assert found is not None
-    return FittedHypothesis(tuple(effects), found, evidence(found, case.library.effects))
+    return FittedHypothesis(tuple(effects), found, log_evidence(found, case.library.effects))
 
 
 def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, fly: Fly) -> None:
@@ -132,7 +132,7 @@ def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(sprung_an
     case, nominal = sprung_and_late
     tried = [refined(case, fitted(case, nominal, effects)) for effects in ({**SPRING, **LATE}, LATE)]
     both, single = (entry for entry in tried if entry is not None)
-    none = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
+    none = FittedHypothesis((), nominal, log_evidence(nominal, case.library.effects))
     search = Search((both, single, none), none, True, linearised(case, nominal), ())
     weighed = Weighed((both,), (1.0,), 0.0, 0.0, 1.0)
     shares = {row.place: row.share for row in place_shares(search, weighed, None)}
