@@ -49,12 +49,12 @@ and not fitted, `t_0` of `warmup`, when the motor is cold: a simulation takes it
 The prior is what one believes of an effect before any log, in log odds: 0 of one that rigs of this kind are known for, -2 of one that
 is possible; what differs is said below, with the values of a number that make it less probable.
 
-An effect of one's own is one file in `sim/effects/`, made known to `FAMILIES` in its `__init__.py`, in the order in which it acts.
-It then is in the library of every plant that has its place, in the simulation, the diagnosis and this page (`python -c "from
-sim.composition.page import *; print(effects_page(), end='')"`). All that is its own stands in that file, also what a diagnosis
-must know of it (`sim/effect.py` says of each field what it does): its `prior` with the reason, of each number its `role`, by which
-starts of a fit are looked for, and `unlikely` values, and a `filter_state` where a filter carries it otherwise than a simulation. A
-plain one states none of these and counts as possible. A stage of a new kind on the way of an output has a row more in `READ_BACK` of
+An effect of one's own is one file in `sim/effects/`; where its order among the others matters, `INNER` or `OUTER` in the
+`__init__.py` there name it. It then is in the library of every plant that has its place, in the simulation, the diagnosis and this page
+(`python -c "from sim.composition.page import *; print(effects_page(), end='')"`). All that is its own stands in that file, also what a
+diagnosis must know of it (`sim/effect.py` says of each field what it does): its `prior` with the reason, of each number its `role`, by
+which starts of a fit are looked for, and `unlikely` values, and a `filter_state` where a filter carries it otherwise than a simulation.
+A plain one states none of these and counts as possible. A stage of a new kind on the way of an output has a row more in `READ_BACK` of
 `diagnosis/library/sensor_effects.py` and in `READ` of `diagnosis/validate/prediction.py`, without which a diagnosis ends and says so.
 """
 

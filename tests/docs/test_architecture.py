@@ -48,7 +48,11 @@ class Example:
 
 
 EXAMPLES = {
-    "effect that a nominal model lacks": Example("imbalance", {"NAME": "imbalance"}),
+    "effect that a nominal model lacks": Example(
+        "imbalance",
+        {"NAME": "imbalance"},
+        beside="sim/effects/__init__.py",  # its order, which a new one may leave open
+    ),
     "kind of stage on the way of a reading": Example("OutputSteps", {}, ("sim", "diagnosis"), "sim/effects/"),
     "plant": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, beside="recordings/"),
     "controller": Example("lqg", {"NAME": "lqg"}, beside="controllers/lqg_(gains|loop).py"),
