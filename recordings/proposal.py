@@ -12,7 +12,7 @@ from recordings.formats.clocks import is_time_name
 from recordings.signals import Contents, Signal
 from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
 from records.logs.columns import LogColumns
-from records.text.units import unit_of, unit_suffix
+from records.text.units import stem, unit_of
 
 # Words for one thing: columns bear the symbol, logs mostly the word.
 SYNONYMS = (
@@ -109,7 +109,7 @@ def likeness(column: str, name: str, signal: Signal) -> float:
     fits = _fits(column, name, signal)
     if fits is False:
         return 0.0
-    own = _words(column.removesuffix(f"_{unit_suffix(column)}"))
+    own = _words(stem(column))
     other = _words(f"{signal.heading} {name}" if signal.heading else name.removesuffix(suffix_of(name)))
     if not own or not other:
         return 0.0

@@ -88,6 +88,14 @@ class LiesIn(StrEnum):
     UNEXPLAINED = "unexplained"
 
 
+AND = " + "  # between the names of what holds jointly
+
+
+def names_of(joint: str) -> tuple[str, ...]:
+    """The names that "a.b + c.d" joins."""
+    return tuple(joint.split(AND))
+
+
 @dataclass(frozen=True)
 class Firmware:
     """The controller's own code run again on the log; `cause` is one sentence behind its `names`, None where nothing differs.
@@ -131,6 +139,11 @@ class Hypothesis:
     probability: float
     parameters: Mapping[str, Estimate]
     ambiguous_with: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its effects one by one."""
+        return names_of(self.effect)
 
 
 @dataclass(frozen=True)

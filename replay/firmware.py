@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from records.diagnosis import Firmware, LiesIn
+from records.diagnosis import Firmware, LiesIn, names_of
 from records.errors import BadInput
 from records.log import RunLog
 from records.logs.sidecar import DOUBLE
@@ -80,7 +80,7 @@ class FirmwareReplay:
     def record(self) -> Firmware:
         """The record of diagnosis.json."""
         cause = None if self.cause is None else f"{self.cause}: {self.sentence}"
-        names = () if self.cause is None else tuple(self.cause.split(" + "))
+        names = () if self.cause is None else names_of(self.cause)
         return Firmware(self.replayed, self.bit_exact, self.first_difference_s, cause, names, self._lies_in(names))
 
     def _lies_in(self, names: tuple[str, ...]) -> LiesIn | None:
@@ -97,7 +97,7 @@ class FirmwareReplay:
 
 def demand_causal(path: Path, replay: FirmwareReplay) -> None:
     """Raise BadInput where the controller's own code gives the logged commands only in later rows: none answers what it has yet to read."""
-    if EARLY_OUTPUT in (replay.cause or "").split(" + "):
+    if EARLY_OUTPUT in names_of(replay.cause or ""):
         raise BadInput(
             "columns",
             str(path),

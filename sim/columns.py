@@ -1,7 +1,7 @@
 """Columns of a plant's run logs, derived from its equations."""
 
 from records.logs.columns import LogColumns
-from records.text.units import unit_suffix
+from records.text.units import stem, unit_suffix
 from sim.model import Model
 
 
@@ -21,4 +21,4 @@ def log_columns(model: Model) -> LogColumns:
 def reference_name(output: str) -> str:
     """The column of an output's reference: `_ref` stands before the unit, q_rad_s: q_ref_rad_s."""
     unit = unit_suffix(output)
-    return f"{output.removesuffix(f'_{unit}')}_ref_{unit}" if unit else f"{output}_ref"
+    return f"{stem(output)}_ref_{unit}" if unit else f"{output}_ref"

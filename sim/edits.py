@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy
 
-from records.text.units import unit_suffix
+from records.text.units import stem
 from sim.model import TIME, Axis, Model
 from sim.places import AxisPlace, Edit
 
@@ -143,5 +143,4 @@ def speed_name(model: Model, name: str) -> str:
 
 def short(name: str) -> str:
     """A column without its unit: psi of psi_rad."""
-    unit = unit_suffix(name)
-    return name.removesuffix(f"_{unit}") if unit else name
+    return stem(name)

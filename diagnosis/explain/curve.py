@@ -9,7 +9,7 @@ from diagnosis.detect.curves import ALONE
 from diagnosis.detect.signals import Quantity
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.search.free_curve import FittedCurve
-from records.text.units import unit_suffix
+from records.text.units import stem, unit_suffix
 
 Array = NDArray[np.float64]
 INSTANTS = 201
@@ -51,7 +51,7 @@ def target_of(library: EffectLibrary, target: int) -> Quantity:
     states = len(library.states)
     name = library.states[target] if target < states else library.outputs[target - states]
     unit = unit_suffix(name)
-    stem, shown = name.removesuffix(f"_{unit}"), unit.replace("_s", "/s")
+    shown = unit.replace("_s", "/s")
     if target >= states:
-        return Quantity(stem, shown)
-    return Quantity(f"d {stem}/dt", f"{shown}^2" if shown.endswith("/s") else f"{shown}/s")
+        return Quantity(stem(name), shown)
+    return Quantity(f"d {stem(name)}/dt", f"{shown}^2" if shown.endswith("/s") else f"{shown}/s")

@@ -102,10 +102,15 @@ def shown(name: str) -> tuple[str, float]:
     return ("deg", math.degrees(1.0)) if unit_suffix(name) == "rad" else (unit_of(name) or "1", 1.0)
 
 
+def stem(name: str) -> str:
+    """A column's name without its unit: "a_y" of a_y_m_s2."""
+    suffix = unit_suffix(name)
+    return name.removesuffix(f"_{suffix}") if suffix else name
+
+
 def label(name: str) -> str:
     """A column's name as an axis shows it: "a_y [m/s^2]" of a_y_m_s2; one without a unit stays as it is."""
-    suffix = unit_suffix(name)
-    return f"{name.removesuffix(f'_{suffix}')} [{unit_of(name)}]" if suffix else name
+    return f"{stem(name)} [{unit_of(name)}]" if unit_suffix(name) else name
 
 
 def _parts(unit: str) -> list[tuple[int, str]]:

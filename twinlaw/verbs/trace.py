@@ -12,7 +12,7 @@ from codegen.traceability.origin import Trace, names, trace
 from controllers.loading import load_scheduled
 from design.settings import read_settings
 from records.text.uncertain import to_sd
-from records.text.units import label, unit_of
+from records.text.units import stem, unit_of
 from twinlaw.cli import console, options
 from twinlaw.workflows.reading import load_bound
 
@@ -54,7 +54,7 @@ def trace_text(found: Trace) -> str:
         parts.append(f"  poles placed at {poles} rad/s, free degree: {found.free_degree}")
     if found.points:
         parts += [f"  polynomial {_polynomial(found)}"] if found.schedule else []
-        heading = (_symbol(found.schedule) or "at", "inputs at rest", "designed", "kept", "difference")
+        heading = (stem(found.schedule) or "at", "inputs at rest", "designed", "kept", "difference")
         parts += ["", console.table(_point_rows(found), heading)]
     if found.parameters:
         parts += ["", console.table(_parameter_rows(found), PARAMETER_HEADING)]
@@ -62,12 +62,8 @@ def trace_text(found: Trace) -> str:
     return "\n".join(parts)
 
 
-def _symbol(column: str) -> str:
-    return label(column).partition(" [")[0]
-
-
 def _polynomial(found: Trace) -> str:
-    symbol = _symbol(found.schedule)
+    symbol = stem(found.schedule)
     return " ".join(f"{coefficient:+.6g} {symbol}^{power}" for power, coefficient in enumerate(found.polynomial))
 
 
@@ -76,7 +72,7 @@ def _point_rows(found: Trace) -> list[tuple[str, ...]]:
         (
             f"{point.at:+.4g} {unit_of(found.schedule)}".rstrip() if found.schedule else "rest",
             ", ".join(
-                f"{_symbol(column)} {value:.4f} {unit_of(column)}".rstrip()
+                f"{stem(column)} {value:.4f} {unit_of(column)}".rstrip()
                 for column, value in zip(found.inputs, point.inputs, strict=True)
             ),
             f"{point.designed:.9g}",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from records.logs.live import LiveRow
-from records.text.units import shown, unit_suffix
+from records.text.units import shown, stem, unit_suffix
 from sim.bind import BoundPlant
 
 
@@ -61,11 +61,10 @@ def signals(bound: BoundPlant) -> dict[str, Any]:
 
 
 def _signal(name: str, axis: str) -> dict[str, Any]:
-    stem = name.removesuffix(f"_{unit_suffix(name)}") if unit_suffix(name) else name
     unit, factor = shown(name)
     return {
         "name": name,
-        "label": f"{axis} {stem}".strip(),
+        "label": f"{axis} {stem(name)}".strip(),
         "unit": unit if unit_suffix(name) else "",
         "factor": factor,
     }

@@ -28,9 +28,7 @@ def causes_section(diagnosis: Diagnosis, effects: Mapping[str, Effect], moved: S
             f"What is missing acts on{where} and is of the form {class_in_words(unknown.class_)}; no effect of the library fits it."
         )
     shown_ones = [h for place, h in enumerate(diagnosis.effects) if place < ALWAYS or h.probability > SELDOM]
-    ranked = [
-        (h.probability, _cause_rows(h, set(h.effect.split(" + ")) == set(diagnosis.found), effects)) for h in shown_ones
-    ]
+    ranked = [(h.probability, _cause_rows(h, set(h.names) == set(diagnosis.found), effects)) for h in shown_ones]
     if retuned > SELDOM:
         # Beside an effect other numbers move than without it.
         own = "" if diagnosis.found else moved_in_words(moved)

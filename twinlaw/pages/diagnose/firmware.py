@@ -33,8 +33,7 @@ def firmware_in_words(firmware: Firmware | None, notes: Sequence[Note] = ()) -> 
 
 def firmware_behind_the_first(firmware: Firmware, notes: Sequence[Note]) -> str:
     """The same for a reader of `firmware_first`: without the cause that stands there."""
-    cause = firmware.sentence
-    if not cause or cause not in firmware_first(firmware):
+    if not firmware.differs or firmware.lies_in == LiesIn.UNEXPLAINED:
         return firmware_in_words(firmware, notes)
     return f"{_again(firmware, notes)} {_compared(firmware)}."
 

@@ -42,7 +42,7 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
         return "These logs hold too little motion to tell whether the plant file lacks anything."
     if not diagnosis.found:
         return _nothing_added(diagnosis)
-    chosen = [h for h in diagnosis.effects if set(h.effect.split(" + ")) == set(diagnosis.found)]
+    chosen = [h for h in diagnosis.effects if set(h.names) == set(diagnosis.found)]
     sizes = _sizes(chosen[0]) if chosen else {}
     names = " and ".join(words(name) + sizes.get(name, "") for name in diagnosis.found)
     part = f", {percent(diagnosis.partly)} that a part of it is right" if diagnosis.partly > WORTH_A_THOUGHT else ""
@@ -60,7 +60,7 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
 def _sizes(hypothesis: Hypothesis) -> dict[str, str]:
     """The first number of each effect, which is its size, with its unit."""
     found: dict[str, str] = {}
-    several = " + " in hypothesis.effect
+    several = len(hypothesis.names) > 1
     for symbol, entry in hypothesis.parameters.items():
         name = symbol.rpartition(".")[0] if several else hypothesis.effect
         told = f"{symbol.rpartition('.')[2]} = {to_sd(entry.value, entry.sd)} {plain_unit(entry.unit)}".rstrip()

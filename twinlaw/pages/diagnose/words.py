@@ -6,12 +6,12 @@ from functools import cache
 
 from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
-from records.diagnosis import Diagnosis, Hypothesis
+from records.diagnosis import Diagnosis, Hypothesis, names_of
 from records.quality import MISFIT
 from records.reasons import DOUBTS, Note
 from records.text.functional_class import Dependence, parse_class
 from records.text.uncertain import with_sd
-from records.text.units import label, plain_unit, unit_of
+from records.text.units import plain_unit, stem, unit_of
 from sim.added_effects import every_effect
 from sim.effect import Effect
 
@@ -50,7 +50,7 @@ def plain_text(value: object) -> str:
 
 def words(name: str) -> str:
     """ "azimuth.cable_spring" as "cable spring of the azimuth", several with "and"."""
-    parts = [part.replace("_", " ").partition(".") for part in name.split(" + ")]
+    parts = [part.replace("_", " ").partition(".") for part in names_of(name)]
     parts = [(place, dot, _said().get(effect, effect)) for place, dot, effect in parts]
     return " and ".join(f"{effect} of the {place}" if effect else f"the {place}" for place, _, effect in parts)
 
@@ -85,7 +85,7 @@ def shown(name: str) -> tuple[str, str, float]:
         if name.endswith(suffix):
             return name.removesuffix(suffix), f"[{unit}]", scale
     unit = unit_of(name)
-    return label(name).partition(" [")[0], f"[{unit}]" if unit else "", 1.0
+    return stem(name), f"[{unit}]" if unit else "", 1.0
 
 
 def plain_notes(notes: Sequence[Note]) -> list[str]:
@@ -127,8 +127,8 @@ def _signal(depends: Dependence) -> str:
 
 def sized(hypothesis: Hypothesis, effects: Mapping[str, Effect], equals: str = " = ") -> list[tuple[str, str, str]]:
     """Each effect of a hypothesis once: its name, its class, and its parameters; `effects` are the plant's library by name."""
-    names, classes = hypothesis.effect.split(" + "), hypothesis.class_.split(" + ")
-    classes += [""] * (len(names) - len(classes))
+    names, classes = hypothesis.names, names_of(hypothesis.class_)
+    classes += ("",) * (len(names) - len(classes))
     joint = len(names) > 1
     lines = []
     for name, class_ in zip(names, classes, strict=False):

@@ -12,7 +12,7 @@ from identification.frequency.truth import Truth
 from identification.results.result import NORMAL
 from records.quality import MISFIT
 from records.text.uncertain import EXACT, interval, to_sd
-from records.text.units import label, unit_of
+from records.text.units import label, stem, unit_of
 from twinlaw.pages.identify.truth import HEADING as TRUTH_HEADING
 from twinlaw.pages.identify.truth import off, told, z
 from twinlaw.pages.measured import measured
@@ -129,8 +129,11 @@ def _matrix(of: StateSpaces, name: str, states: Sequence[str], columns: Sequence
 def _rate(state: str) -> str:
     """ "p' [rad/s^2]" of p_rad_s."""
     unit = unit_of(state)
-    name = label(state).partition(" [")[0]
-    return f"{name}' [{unit.removesuffix('/s')}/s^2]" if unit.endswith("/s") else f"{name}' [{unit or '1'}/s]"
+    return (
+        f"{stem(state)}' [{unit.removesuffix('/s')}/s^2]"
+        if unit.endswith("/s")
+        else f"{stem(state)}' [{unit or '1'}/s]"
+    )
 
 
 def element_tables(found: FrequencyIdentification, truth: Truth) -> list[Table]:

@@ -12,7 +12,7 @@ from identification.results.result import Identification
 from identification.stages.estimate import Estimate
 from records.experiment import Experiment
 from records.text.uncertain import to_sd
-from records.text.units import label, shown
+from records.text.units import shown, stem
 from sim.columns import reference_name
 from twinlaw.pages.identify.residuals import fit_section
 from twinlaw.pages.identify.summary import (
@@ -159,7 +159,7 @@ def flight_section(comparison: Comparison) -> Section:
             Curve(real.t_s, scale * real.column(name), "real plant", GREEN),
             Curve(here.t_s, scale * here.column(name), "identified", RED, "--"),
         ]
-        panels.append(Panel(f"{label(name).partition(' [')[0]} [{unit}]", tuple(curves)))
+        panels.append(Panel(f"{stem(name)} [{unit}]", tuple(curves)))
     rows = [(name, measured(value, name)) for name, value in comparison.rms.items()]
     return Section(
         "Validation in the control structure",

@@ -7,7 +7,7 @@ from identification.results.quality import fit_looks
 from identification.runs.prediction import predicted
 from identification.runs.run import Run
 from identification.stages.estimate import Estimate
-from records.text.units import label
+from records.text.units import stem, unit_of
 from twinlaw.pages.page import Section
 from twinlaw.pages.plots import BLUE, GREY, ORANGE, Array, Curve, Panel, stack
 from twinlaw.pages.quality import colour_of
@@ -80,6 +80,6 @@ def _broken(values: Array, run: Run, places: Index) -> Array:
 def _scale(channel: str) -> tuple[float, str, str]:
     """Factor, name and unit in brackets; angles in degrees."""
     if channel.endswith("_rad"):
-        return float(np.degrees(1.0)), channel.removesuffix("_rad"), " [deg]"
-    name, bracket, unit = label(channel).partition(" [")
-    return 1.0, name, f"{bracket}{unit}"
+        return float(np.degrees(1.0)), stem(channel), " [deg]"
+    unit = unit_of(channel)
+    return 1.0, stem(channel), f" [{unit}]" if unit else ""

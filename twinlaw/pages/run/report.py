@@ -10,7 +10,7 @@ from design.trade_off import TradePoint
 from records.log import RunLog
 from records.loops import LOOPS, Loop
 from records.quality import Colour, flag
-from records.text.units import label, shown, unit_of
+from records.text.units import shown, stem, unit_of
 from records.verification import Verification
 from sim.columns import reference_name
 from toolchain.elf import ImageSizes
@@ -98,7 +98,7 @@ def flight_plot(log: RunLog, loops: Sequence[Loop] = LOOPS) -> str:
 
 def _told(column: str, names: Mapping[str, str]) -> str:
     """The column's name for a reader, from `names` where it has one."""
-    return names.get(column, label(column).partition(" [")[0])
+    return names.get(column, stem(column))
 
 
 def _flight(flight: ChainFlight, loops: Sequence[Loop]) -> Section:

@@ -14,7 +14,7 @@ from records.diagnosis import diagnosis_text
 from records.files import demand_writable
 from records.plant import plant_files
 from records.text.log_csv import rows_text
-from records.text.units import unit_suffix
+from records.text.units import stem, unit_suffix
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import moved_most
 from twinlaw.pages.page import Page, page_text
@@ -73,11 +73,10 @@ def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:
     names, columns = ["t_s"], [predicted.t_s]
     for place, output in enumerate(outputs):
         unit = unit_suffix(output)
-        stem = output.removesuffix(f"_{unit}") if unit else output
         names.append(output)
         columns.append(predicted.y[:, place])
         for variant in MODEL_VARIANTS:
-            names.append(f"{stem}_{variant}_{unit}" if unit else f"{output}_{variant}")
+            names.append(f"{stem(output)}_{variant}_{unit}" if unit else f"{output}_{variant}")
             columns.append(predicted.by[variant][:, place])
     return rows_text(names, columns, None).replace("nan", "")
 

@@ -14,7 +14,7 @@ from diagnosis.validate.left_alone import left_alone
 from jobs.crew import Crew
 from jobs.job import Job
 from jobs.keep import Folders
-from records.diagnosis import Diagnosis, Shrinkage, load_diagnosis
+from records.diagnosis import Diagnosis, Shrinkage, load_diagnosis, names_of
 from twinlaw.workflows.diagnose.files import ANSWER, result_files
 from twinlaw.workflows.diagnose.material import read_material
 from twinlaw.workflows.diagnose.parcel import Parcel, opened, parcel
@@ -101,12 +101,8 @@ def consistency(found: Sequence[Split]) -> Consistency:
 def _alike(diagnosis: Diagnosis) -> set[tuple[str, ...]]:
     """What was added, and all sets of effects that look the same in the logs that were explained."""
     added = tuple(sorted(diagnosis.found))
-    twins = [entry.ambiguous_with for entry in diagnosis.effects if _effects(entry.effect) == added]
-    return {added, *(_effects(twin) for entry in twins for twin in entry)}
-
-
-def _effects(text: str) -> tuple[str, ...]:
-    return tuple(sorted(text.split(" + ")))
+    twins = [entry.ambiguous_with for entry in diagnosis.effects if set(entry.names) == set(added)]
+    return {added, *(tuple(sorted(names_of(twin))) for entry in twins for twin in entry)}
 
 
 def facts(found: Sequence[Split]) -> list[dict[str, Any]]:
