@@ -42,9 +42,7 @@ def demand_settling(bound: BoundPlant, table: LawTable[Any], law: Controller, ex
             limit = SETTLED * (axis.reference_max_rad - axis.reference_min_rad)
             if not error <= limit:
                 whose = f"{'an' if loop.axis[0] in 'aeiou' else 'a'} {loop.axis} that is {said(loop.output, error)} off"
-                flown = settings.place(f"{whose} at the end of a flight from rest", scheduled_rad).removesuffix(
-                    " at rest"
-                )
+                flown = f"{whose} at the end of a flight from rest{settings.scheduled_at(scheduled_rad)}"
                 where = f"plant {bound.plant.name!r}, controller {table.controller!r}"
                 remedy = f"choose another controller; this one is for {expected}"
                 raise BadInput("stability", where, flown, f"at most {said(loop.output, limit)}", remedy)

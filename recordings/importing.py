@@ -26,7 +26,7 @@ from recordings.mapping.source import Source, source
 from recordings.mapping.times import TIME
 from recordings.proposal import proposed
 from recordings.row_order import in_time
-from recordings.signals import Contents, Signal, listed
+from recordings.signals import Contents, Signal, Unmapped, listed
 from records.errors import BadInput
 from records.log import RunLog
 from records.logs.clock import finer_unit
@@ -163,7 +163,7 @@ def _incomplete(missing: list[str], of: Source, columns: LogColumns, said: Mappi
     found = "; ".join(of.contents.found)[:500]
     got = f"{there}{f' ({found})' if found else ''}"
     remedy = f"say which is which, for example {' '.join(proposed(of.contents, columns, said))}"
-    return BadInput(f"columns {', '.join(missing)}", of.where, got, "a signal for each", remedy)
+    return Unmapped(f"columns {', '.join(missing)}", of.where, got, "a signal for each", remedy)
 
 
 def _named(name: str, of: Source) -> str:

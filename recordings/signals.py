@@ -8,6 +8,8 @@ from itertools import accumulate, groupby
 import numpy as np
 from numpy.typing import NDArray
 
+from records.errors import BadInput
+
 Array = NDArray[np.float64]
 
 
@@ -26,6 +28,10 @@ class Signal:
     faults: Mapping[int, str] = field(default_factory=dict)
     heading: str = ""
     instants: bool = False
+
+
+class Unmapped(BadInput):
+    """Columns that no signal of the file is known to be: which one is must be said."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -283,6 +283,10 @@ def with_own_zero(spelling: str) -> Unit | None:
     return unit if unit and unit.zero else None
 
 
+class CountsUnknown(ValueError):
+    """A count of an encoder has no factor, as nobody said how many are one turn."""
+
+
 def factor_to(si: str, spelling: str, per_turn: float | None) -> float:
     """How many of the SI unit `si` one of `spelling` is; raises ValueError with what is missing, in a few words."""
     unit = known(spelling) or _ending(spelling)
@@ -299,7 +303,7 @@ def factor_to(si: str, spelling: str, per_turn: float | None) -> float:
     if not unit.per_turn:
         return unit.factor
     if per_turn is None:
-        raise ValueError("the counts of one turn are not known: give them with --per-turn N")
+        raise CountsUnknown("the counts of one turn are not known: give them with --per-turn N")
     return unit.factor / per_turn
 
 

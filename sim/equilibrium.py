@@ -270,7 +270,7 @@ def _check_stops(bound: BoundPlant, axis: Axis, position: float) -> None:
             f"{axis.name} {'angle' if unit_suffix(str(axis.position)) == 'rad' else 'position'}",
             f"equilibrium of plant {bound.plant.name!r}",
             _told(axis, position),
-            f"{_told(axis, lower).split()[0]} to {_told(axis, upper)}, the stops",
+            f"{_shown(axis, lower):g} to {_told(axis, upper)}, the stops",
             "choose a position between the stops",
         )
 
@@ -297,4 +297,8 @@ def _place(bound: BoundPlant, positions_rad: Sequence[float]) -> str:
 def _told(axis: Axis, position: float) -> str:
     """A position as a person reads it: an angle in degrees, anything else in its unit."""
     name = str(axis.position)
-    return f"{np.degrees(position):g} deg" if unit_suffix(name) == "rad" else f"{position:g} {unit_of(name)}"
+    return f"{_shown(axis, position):g} {'deg' if unit_suffix(name) == 'rad' else unit_of(name)}"
+
+
+def _shown(axis: Axis, position: float) -> float:
+    return float(np.degrees(position)) if unit_suffix(str(axis.position)) == "rad" else position

@@ -98,7 +98,11 @@ class DesignSettings:
 
     def place(self, what: str, psi_rad: float) -> str:
         """Where something is, in words: elevation at psi = -7.9 deg."""
+        return f"{what} at rest" if self.schedule is None else f"{what}{self.scheduled_at(psi_rad)}"
+
+    def scheduled_at(self, psi_rad: float) -> str:
+        """The same of what schedules the law alone; empty where nothing does."""
         if self.schedule is None:
-            return f"{what} at rest"
+            return ""
         loop = self.loop(self.schedule.axis)
-        return f"{what} at {loop.symbol} = {said(loop.output, psi_rad)}"
+        return f" at {loop.symbol} = {said(loop.output, psi_rad)}"

@@ -14,6 +14,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 
 DEGREE = np.degrees(1.0)
+COUNTS = "encoder counts"
 
 
 def angle_unit(log: RunLog, name: str, column: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
@@ -54,7 +55,7 @@ def _unit_by_motion(log: RunLog, column: str, bound: BoundPlant, facts: PlantFac
         return None
     in_radians, found = of(1.0), {unit: of(scale) for unit, scale in possible.items()}
     unit = min(found, key=lambda each: found[each])
-    if unit == "encoder counts":
+    if unit == COUNTS:
         return unit if is_beyond or found[unit] <= in_radians else None
     way = greatest_of(values) / DEGREE
     by_size = is_beyond and way > thresholds.LEAST_OF_STOP * _widest(column, facts)
@@ -68,7 +69,7 @@ def _possible_units(values: Array, step: float, widest: float) -> dict[str, floa
     greatest, found = greatest_of(values), dict[str, float]()
     most = min(widest, thresholds.MOST_rad) + thresholds.BEYOND_STOP_rad
     if step > 0.0 and are_whole(values) and 3.0 < greatest <= most / step:
-        found["encoder counts"] = 1.0 / step
+        found[COUNTS] = 1.0 / step
     if greatest / DEGREE <= widest + thresholds.BEYOND_STOP_rad:
         found["degrees"] = DEGREE
     return found

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from recordings.mapping.names import PATH, Ambiguous, find, is_under, without_device
 from recordings.mapping.source import Source
-from recordings.signals import Signal
+from recordings.signals import Signal, Unmapped
 from recordings.units import known, suffix_of, unit_of_suffix, without_suffix
 from records.errors import BadInput
 from records.text.units import unit_of, unit_suffix
@@ -40,7 +40,7 @@ def ambiguous(several: Mapping[str, Ambiguous], of: Source) -> BadInput:
     group = first[: -len(name)].rstrip(PATH) if first.endswith(name) else _outermost(first, several)
     or_group = f", or --group {group.removeprefix('group')} for all" if group else ""
     remedy = f"say which: --column {shlex.quote(f'{name}={first}')}{or_group}"
-    return BadInput(f"names {', '.join(several)}", of.where, f"several signals: {shown[:600]}", "one for each", remedy)
+    return Unmapped(f"names {', '.join(several)}", of.where, f"several signals: {shown[:600]}", "one for each", remedy)
 
 
 def _outermost(name: str, several: Mapping[str, Ambiguous]) -> str:

@@ -12,7 +12,7 @@ from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
 from recordings.mapping.values import evaluated, factor_of, parsed, picked, single, unit_for
 from recordings.mapping.wraps import clock_past_its_end
-from recordings.signals import Signal, listed
+from recordings.signals import Signal, Unmapped, listed
 from recordings.units import factor_to, known, suffix_of, unit_of_suffix
 from records.errors import BadInput
 
@@ -106,7 +106,7 @@ def _no_times(of: Source, name: str, length: int) -> BadInput:
     first = next(rising, "NAME")
     remedy = f"name them with --column {shlex.quote(f'{TIME}={first}')}, or --column {TIME}=0.01*row for rows that are 10 ms apart"
     got = listed([*of.signals, *texts, *(f"{single} (one number)" for single in of.contents.singles)])
-    return BadInput(f"column {TIME!r}", of.where, got, "the times of the samples", remedy)
+    return Unmapped(f"column {TIME!r}", of.where, got, "the times of the samples", remedy)
 
 
 def _may_be_times(name: str, signal: Signal, length: int) -> bool:

@@ -12,7 +12,7 @@ from recordings.mapping.expression import parse
 from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
 from recordings.signals import Signal, listed
-from recordings.units import factor_to, suffix_of, unit_of_clock, unit_of_suffix, with_own_zero
+from recordings.units import CountsUnknown, factor_to, suffix_of, unit_of_clock, unit_of_suffix, with_own_zero
 from records.errors import BadInput
 from records.text.units import unit_of
 
@@ -90,11 +90,12 @@ def factor_of(name: str, text: str, quantity: Quantity, of: Source) -> tuple[flo
     try:
         factor = factor_to(si, quantity.unit, of.per_turn)
     except ValueError as error:
-        if "--per-turn" not in str(error) and _says_factor_one(parsed(name, text, of)):
+        is_count = isinstance(error, CountsUnknown)
+        if not is_count and _says_factor_one(parsed(name, text, of)):
             return 1.0, f", as typed, in spite of its {quantity.unit}"
-        remedy = _factor_or_zero(name, text, si, quantity.unit)
-        if "--per-turn" in str(error):
-            remedy = "give them with --per-turn N, all edges counted"
+        remedy = "give them with --per-turn N, all edges counted"
+        if not is_count:
+            remedy = _factor_or_zero(name, text, si, quantity.unit)
         raise BadInput(f"unit of {text!r}", of.where, f"{quantity.unit!r}: {error}", si, remedy) from error
     return factor, f", {quantity.unit} times {factor:.9g}" if factor != 1.0 else f", in {quantity.unit}"
 

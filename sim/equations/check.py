@@ -216,13 +216,10 @@ def _symbols(model: Model, equations: Equations) -> Iterator[Slip]:
     parameters = set(model.parameter_symbols)
     moving = parameters | {TIME, *model.states}
     driven = moving | set(model.inputs)
+    allowed = {"outputs": moving, "coulomb": driven | set(model.friction_signs)}
+    allowed |= dict.fromkeys(("rates", "torque", "inertia", "signals"), driven)
     for what, words, expression in _expressions(model):
-        kind = what.split(" ")[0]
-        known = (
-            driven if kind in ("rate", "torque", "inertia", "signal") else moving if kind == "output" else parameters
-        )
-        if kind == "coulomb":
-            known = driven | set(model.friction_signs)
+        known = allowed.get(words[0], parameters)
         for symbol in sorted(sympy.sympify(expression).free_symbols - known, key=str):
             yield _stranger(model, what, words, symbol, known)
 
@@ -257,7 +254,7 @@ def _functions(model: Model, equations: Equations) -> Iterator[Slip]:
     for what, words, expression in _expressions(model):
         whole = sympy.sympify(expression)
         unknown = _without_text(whole)
-        endless = () if "input_limits" in words or "stop" in what else (sympy.oo, -sympy.oo)
+        endless = () if words[0] in ("input_limits", "lower", "upper") else (sympy.oo, -sympy.oo)
         if whole.has(sympy.nan, sympy.zoo, sympy.I, *endless):
             yield Slip(words, what, shown(expression), "a real number everywhere", "look for a division by 0")
         elif unknown is not None:

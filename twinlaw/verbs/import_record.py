@@ -26,6 +26,7 @@ from recordings.importing import DEFAULT_PLANT, Imported, columns_of, import_fil
 from recordings.layout import TextLayout
 from recordings.mapping.mapping import ColumnMapping, load_mapping, save_mapping
 from recordings.proposal import overview, proposed
+from recordings.signals import Unmapped
 from records.errors import BadInput
 from records.files import demand_writable
 from records.log import RunLog, save_log
@@ -114,9 +115,8 @@ def _import_file(chosen: argparse.Namespace, said: ColumnMapping) -> int:
     mapping = said.over(load_mapping(chosen.mapping) if there else ColumnMapping())
     try:
         imported = import_file(path, mapping, _span(chosen))
-    except BadInput as error:
-        unmapped = error.what.startswith(("columns ", "names ", "column 't_s'")) and not mapping.columns
-        if unmapped and sys.stdout.isatty() and not chosen.json:
+    except Unmapped:
+        if not mapping.columns and sys.stdout.isatty() and not chosen.json:
             _show(path, mapping)
         raise
     log = _every(imported.log, chosen.every)
