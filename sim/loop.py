@@ -129,7 +129,8 @@ def period_s(manoeuvre: Manoeuvre) -> float:
 
 def closed_loop_log(bound: BoundPlant, manoeuvre: Manoeuvre, u: Array, y: Array, table_digest: str | None) -> RunLog:
     """The run log of a flight: inputs u (n, inputs), measured outputs y (n, outputs), and the references."""
-    return _log(bound, period_s(manoeuvre), manoeuvre.t_s, manoeuvre.reference_rad, u, y, table_digest)
+    log = _log(bound, period_s(manoeuvre), manoeuvre.t_s, manoeuvre.reference_rad, u, y)
+    return replace(log, table_digest=table_digest)
 
 
 def live_log(bound: BoundPlant, rows: Sequence[LiveRow], table_digest: str | None) -> RunLog:
@@ -140,12 +141,10 @@ def live_log(bound: BoundPlant, rows: Sequence[LiveRow], table_digest: str | Non
     t_s = np.array([row.t_s for row in rows])
     period_s = float(np.median(np.diff(t_s)))
     reference, u, y = (np.array([getattr(row, name) for row in rows]) for name in ("reference", "u", "y"))
-    return _log(bound, period_s, t_s - t_s[0], reference, u, y, table_digest)
+    return replace(_log(bound, period_s, t_s - t_s[0], reference, u, y), table_digest=table_digest)
 
 
-def _log(
-    bound: BoundPlant, period_s: float, t_s: Array, reference: Array, u: Array, y: Array, table_digest: str | None
-) -> RunLog:
+def _log(bound: BoundPlant, period_s: float, t_s: Array, reference: Array, u: Array, y: Array) -> RunLog:
     """A run log of the closed loop with its references (n, outputs)."""
     references = zip(bound.model.outputs, reference.T, strict=True)
     return RunLog(
@@ -156,5 +155,4 @@ def _log(
         u=u,
         y=y,
         extra={reference_name(output): values for output, values in references},
-        table_digest=table_digest,
     )

@@ -79,7 +79,9 @@ def stand_in(
         return None
     limits = np.array([bound.commands(variable) for variable in model.inputs])
     own = np.array([s for _, s in free])
-    gains = _gains(bound, rest, kept, tracked, own, INPUT_SHARE * np.ptp(limits, axis=1), period_s)
+    inputs, rows = INPUT_SHARE * np.ptp(limits, axis=1), [kept.index(place) for place in tracked]
+    F, G = _sampled(bound, rest, kept, rows, inputs, period_s)
+    gains = _gains(F, G, _weights(rest.x0[kept], rows, own), np.diag(1.0 / inputs**2))
     if gains is None:
         return None
     K = np.zeros((len(model.inputs), len(model.states)))
@@ -94,31 +96,27 @@ def _slopes(equations: Reference, at: tuple[float, Array, Array, Array, Array], 
     return np.stack([(up - down) / (2.0 * r) for (up, down), r in zip(sides, reach.tolist(), strict=True)], axis=1)
 
 
-def _gains(
-    bound: BoundPlant,
-    rest: OperatingPoint,
-    kept: list[int],
-    tracked: list[int],
-    size: Array,
-    inputs: Array,
-    period_s: float,
-) -> Array | None:
-    from scipy.linalg import expm, solve_discrete_are  # half a second, which whoever needs no stand-in is spared
+def _sampled(
+    bound: BoundPlant, rest: OperatingPoint, kept: list[int], rows: list[int], inputs: Array, period_s: float
+) -> tuple[Array, Array]:
+    """F (n + k, n + k) and G (n + k, inputs) of a sample: of the n states that are `kept`, and of the integrals of k `rows` of them."""
+    from scipy.linalg import expm  # half a second with the next, which whoever needs no stand-in is spared
 
     equations, signs = reference(bound.model), np.zeros(len(bound.model.axes))
     at = (0.0, rest.x0, rest.u0, bound.p, signs)
     A, B = equations.A(*at)[np.ix_(kept, kept)], _slopes(equations, at, inputs)[kept]
-    n, m, k = len(kept), B.shape[1], len(tracked)
+    n, m, k = len(kept), B.shape[1], len(rows)
     whole = np.zeros((n + k + m, n + k + m))
     whole[:n, :n], whole[:n, n + k :] = A, B
-    rows = [kept.index(place) for place in tracked]
     whole[np.arange(n, n + k), rows] = 1.0
     sampled = expm(period_s * whole)
-    F, G = sampled[: n + k, : n + k], sampled[: n + k, n + k :]
-    scale = 1.0 + np.abs(rest.x0[kept])
-    Q = np.diag(np.concatenate([SMALL_WEIGHT / scale**2, 1.0 / (size * INTEGRAL_S) ** 2]))
-    Q[rows, rows] += 1.0 / size**2
-    R = np.diag(1.0 / inputs**2)
+    return sampled[: n + k, : n + k], sampled[: n + k, n + k :]
+
+
+def _gains(F: Array, G: Array, Q: Array, R: Array) -> Array | None:
+    """The linear-quadratic law of a sampled plant; None where there is none, or none that is stable."""
+    from scipy.linalg import solve_discrete_are
+
     try:
         P = solve_discrete_are(F, G, Q, R)
     except (np.linalg.LinAlgError, ValueError):
@@ -126,3 +124,11 @@ def _gains(
     gains = np.linalg.solve(R + G.T @ P @ G, G.T @ P @ F)
     stable = np.abs(np.linalg.eigvals(F - G @ gains)).max() < 1.0
     return np.asarray(gains) if stable else None
+
+
+def _weights(about: Array, rows: list[int], size: Array) -> Array:
+    """Q of states that rest at `about` and of the integrals of those in `rows`, which follow to `size`."""
+    scale = 1.0 + np.abs(about)
+    Q = np.diag(np.concatenate([SMALL_WEIGHT / scale**2, 1.0 / (size * INTEGRAL_S) ** 2]))
+    Q[rows, rows] += 1.0 / size**2
+    return Q

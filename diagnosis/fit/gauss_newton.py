@@ -1,4 +1,9 @@
-"""Maximum a posteriori fit of what is supposed: Gauss-Newton with Levenberg's damping on the whitened innovations."""
+"""Maximum a posteriori fit of a hypothesis: Gauss-Newton with Levenberg's damping on the whitened innovations.
+
+It is no use of identification/fit/levenberg_marquardt.py: what is maximised is a likelihood and no sum of squares, as ln s goes with what
+is fitted, and each point costs a filter's pass over all logs. So steps begin undamped, are damped a few times only where the likelihood
+falls, and end where one gains or promises less than LEAST_STEP_GAIN nats, which no sum of squares counts in.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -66,7 +66,7 @@ def fly(machine: Machine, tests: Sequence[FlightTest], seed: int, duration_s: fl
     airs = [air_of(machine, test.condition) for test in tests]
     air = Air(*(np.concatenate([getattr(a, name) for a in airs]) for name in ("density_kg_m3", "station_m")))
     drawn = [_drawn(test, seed, duration_s) for test in tests]
-    x, u, y = _flown(machine, air, s, c, _inputs(tests, drawn, duration_s), tests, drawn)
+    x, u, y = _flown(machine, air, (s, c), _inputs(tests, drawn, duration_s), tests, drawn)
     return tuple(
         Flight(test.condition, test.mission, test.manoeuvre, test.number, test.use, SAMPLE_s, u[:, :, i],
                x[:, :, i] + chance.noise_x, y[:, :, i] + chance.noise_y)
@@ -77,13 +77,13 @@ def fly(machine: Machine, tests: Sequence[FlightTest], seed: int, duration_s: fl
 def _flown(
     machine: Machine,
     air: Air,
-    s: Array,
-    trimmed: Array,
+    start: tuple[Array, Array],
     inputs: Array,
     tests: Sequence[FlightTest],
     drawn: Sequence[Disturbance],
 ) -> tuple[Array, Array, Array]:
-    """x (samples, 8, n), u (samples, 4, n), y (samples, 3, n) without noise."""
+    """x (samples, 8, n), u (samples, 4, n), y (samples, 3, n) without noise, from the trimmed `start`: states and controls."""
+    s, trimmed = start
     gain = np.stack([_gain(test) for test in tests], axis=2)
     gusts, remnants = (np.stack([getattr(entry, name) for entry in drawn], axis=2) for name in ("gust", "remnant"))
     x_trim, c, every = s[:8].copy(), trimmed.copy(), round(SAMPLE_s / STEP_s)

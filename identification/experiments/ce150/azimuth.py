@@ -6,7 +6,7 @@ from scipy.sparse import csr_array
 
 from identification.experiments.ce150 import models
 from identification.experiments.ce150.rig import PERIOD_S, PHI, Rig, Setup
-from identification.experiments.ce150.windows import even_windows, windowed
+from identification.experiments.ce150.windows import Readings, even_windows, windowed
 from identification.model.observation import observation
 from identification.model.subsystem import subsystem
 from identification.runs.run import Run
@@ -47,8 +47,8 @@ def oscillation_run(experiment: Experiment, bound: BoundPlant) -> Run:
     begins, stops = even_windows(motion["t_s"], motion["phi_rad"], 2.0, WINDOW_S)
     extra = {"turned": 0.0, "psi_locked_rad": experiment.facts["psi_locked_rad"]}
     part = subsystem(bound, models.azimuth(), extra)
-    u = motion["u_T_V"][:, None]
-    return windowed(experiment.kind, part, motion["t_s"], u, motion["phi_rad"], "phi_rad", begins, stops)
+    readings = Readings(motion["t_s"], motion["u_T_V"][:, None], motion["phi_rad"], "phi_rad")
+    return windowed(experiment.kind, part, readings, begins, stops)
 
 
 def balance(truth: BoundPlant, rng: Generator) -> Experiment:

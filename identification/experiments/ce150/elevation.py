@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from identification.experiments.ce150 import models
 from identification.experiments.ce150.rig import PERIOD_S, PHI, PSI, Rig, Setup
-from identification.experiments.ce150.windows import even_windows, windowed
+from identification.experiments.ce150.windows import Readings, even_windows, windowed
 from identification.model.subsystem import subsystem
 from identification.runs.run import Run
 from records.experiment import Experiment
@@ -77,7 +77,7 @@ def run(experiment: Experiment, bound: BoundPlant) -> Run:
     begins, stops = even_windows(t_s, psi, _free_from_s(t_s, psi), SWING_WINDOW_S)
     u = np.column_stack([motion["u_M_V"], turning])
     part = subsystem(bound, models.elevation(), {"mount_rad": 0.0})
-    return windowed(experiment.kind, part, t_s, u, psi, "psi_rad", begins, stops)
+    return windowed(experiment.kind, part, Readings(t_s, u, psi, "psi_rad"), begins, stops)
 
 
 def turning_rad_s(t_s: Array, phi_rad: Array, step_rad: float) -> Array:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from identification.experiments.ce150 import models
 from identification.experiments.ce150.rig import PERIOD_S, PHI, PSI, Rig, Setup
-from identification.experiments.ce150.windows import windowed
+from identification.experiments.ce150.windows import Readings, windowed
 from identification.model.subsystem import subsystem
 from identification.runs.run import Run
 from records.experiment import Experiment
@@ -62,7 +62,7 @@ def run(experiment: Experiment, bound: BoundPlant) -> Run:
     else:
         part = subsystem(bound, models.elevation(), {"mount_rad": -math.pi / 2})
     u = np.zeros((stream["t_s"].size, len(part.model.inputs)))
-    return windowed(experiment.kind, part, stream["t_s"], u, stream[output], output, begins, stops)
+    return windowed(experiment.kind, part, Readings(stream["t_s"], u, stream[output], output), begins, stops)
 
 
 def swings(t_s: Array, angle: Array, step: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -1,5 +1,7 @@
 """Encoder readings of one axis, cut into windows with free starts."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,9 +19,17 @@ Index = NDArray[np.int64]
 SHIFT_S, SPEED_ROWS = 2.0, 6
 
 
-def windowed(
-    name: str, part: BoundPlant, t_s: Array, u: Array, angle: Array, output: str, begins: Index, stops: Index
-) -> Run:
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """What a record has of one axis: times (n,), the model's inputs (n, inputs), readings (n,) of the output of this name."""
+
+    t_s: Array
+    u: Array
+    angle: Array
+    output: str
+
+
+def windowed(name: str, part: BoundPlant, readings: Readings, begins: Index, stops: Index) -> Run:
     """A run of a subsystem with one axis: its rotor runs on from rest at the first row, angle and speed start anew in each window.
 
     Raises BadInput where there is no window: the axis never moved freely.
@@ -29,19 +39,20 @@ def windowed(
             "motion", f"experiment {name}", "no stretch in which the axis moves freely", "at least one",
             "check the mount and the locks, and record again: an axis at rest tells nothing",
         )  # fmt: skip
-    step = part.plant.sensors[output]
+    t_s, angle = readings.t_s, readings.angle
+    step = part.plant.sensors[readings.output]
     select = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
     x0, free, start_sd = _starts(part.model, t_s, angle, begins, step)
     return Run(
         name=name,
         bound=part,
         t_s=t_s,
-        u=u,
+        u=readings.u,
         y=angle[select],
         sd=rounding_sd(angle, step)[select],
         at_s=t_s[select],
         channel=np.zeros(select.size, dtype=np.int64),
-        channels=(output,),
+        channels=(readings.output,),
         select=select,
         begins=begins,
         stops=stops,

@@ -16,6 +16,9 @@ from twinlaw.pages.envelope.tables import INPUTS, symbols
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid, row, stack
 
 Array = NDArray[np.float64]
+Run = tuple[
+    Array, str, str, str
+]  # a model's signals (flights, rows, signals) or one of them, its title, colour and dashes
 THIN = 2  # every second row of a flight is drawn
 COLOURS = (BLUE, ORANGE, GREEN, GREY)
 # Columns of the pictures of states: longitudinal and lateral motion.
@@ -69,7 +72,7 @@ def states(check: Check, entry: ConditionResult | None, how: str = FINAL) -> str
     lines = []
     for pair in zip(*SIDES, strict=True):
         places = [STATES.index(name) for name in pair]
-        lines.append([_panel(STATES[i], check.data.x, runs, margins, i, _times(check.data)) for i in places])
+        lines.append([_panel(STATES[i], _one(check.data.x, runs, i), margins[i], _times(check.data)) for i in places])
     return grid(lines, ("longitudinal", "lateral"), "time [s]")
 
 
@@ -79,7 +82,7 @@ def accelerations(check: Check, overall: bool) -> str:
     panels = []
     for i, (name, symbol) in enumerate(zip(OUTPUTS, symbols(OUTPUTS), strict=True)):
         runs = [(run, way, colour, "-") for (way, run), colour in zip(found.items(), (SKY, BLUE, RED), strict=False)]
-        panels.append(_panel(name, check.data.y, runs, margins, i, t_s, f"{symbol} [m/s^2]"))
+        panels.append(_panel(name, _one(check.data.y, runs, i), margins[i], t_s, f"{symbol} [m/s^2]"))
     return stack(panels, "time [s]", panel_height_in=1.9)
 
 
@@ -94,25 +97,23 @@ def training(entry: ConditionResult) -> str:
     return row(panels, ("row", "round", "epoch"), height_in=2.4)
 
 
-def _panel(
-    name: str,
-    measured: Array,
-    runs: Sequence[tuple[Array, str, str, str]],
-    margins: Array,
-    i: int,
-    t_s: Array,
-    label: str | None = None,
-) -> Panel:
+def _one(measured: Array, runs: Sequence[Run], i: int) -> tuple[Array, list[Run]]:
+    """One signal of many: what was measured, and each run."""
+    return measured[:, :, i], [(run[:, :, i], title, colour, dash) for run, title, colour, dash in runs]
+
+
+def _panel(name: str, signal: tuple[Array, list[Run]], margin: float, t_s: Array, label: str | None = None) -> Panel:
     """One signal: measured, both margins, and each run; angles in degrees."""
     scale = 180.0 / np.pi if "rad" in name else 1.0
     unit = {"m_s": "m/s", "rad_s": "deg/s"}.get(name.split("_", 1)[1], "deg")
-    y, margin = scale * _chain(measured[:, :, i]), scale * margins[i]
+    measured, runs = signal
+    y, off = scale * _chain(measured), scale * margin
     curves = [
-        Curve(t_s, y - margin, "margins", "#bbbbbb"),
-        Curve(t_s, y + margin, "", "#bbbbbb"),
+        Curve(t_s, y - off, "margins", "#bbbbbb"),
+        Curve(t_s, y + off, "", "#bbbbbb"),
         Curve(t_s, y, "measured", GREY),
     ]
-    curves += [Curve(t_s, scale * _chain(run[:, :, i]), title, colour, dash) for run, title, colour, dash in runs]
+    curves += [Curve(t_s, scale * _chain(run), title, colour, dash) for run, title, colour, dash in runs]
     return Panel(label or f"{symbols((name,))[0]} [{unit}]", curves)
 
 

@@ -14,7 +14,7 @@ from identification.fit.problem import Told
 from identification.frequency.late_rows import rows_in_doubt
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import UNITS, check_plant, lateral_facts, log_columns
-from identification.frequency.match.fit import match
+from identification.frequency.match.fit import FrequencyFit, match
 from identification.frequency.models.lateral_record import LateralFlight, lateral_flight, lateral_model, lateral_records
 from identification.frequency.models.linear_model import LinearModel, operating_point_model
 from identification.frequency.quality import frequency_quality
@@ -117,7 +117,8 @@ def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, 
     model = lateral_model(plant, names)
     inputs = looked_at(Inputs((), *_read(chosen, holdout, log_columns())), lateral_facts(plant))
     logs, held = inputs.logs, inputs.holdout
-    found = _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant), told)
+    matched = _matched(chosen, model, lateral_records(logs, plant), told)
+    found = frequency_identification(plant, matched, lateral_records(held, plant))
     with console.stage("asking whether commands stand in the rows of their time"):
         doubt = "; ".join(filter(None, [inputs.doubt, rows_in_doubt(found.fit)]))
     found = _with_doubts(found, replace(inputs, doubt=doubt))
@@ -153,7 +154,7 @@ def _operating_point(
     limits = read_limits(chosen.bounds, coefficient_names(bound.model))
     names = free_names(bound, chosen.free)
     model, signs = operating_point_model(bound, names, means, limits), signs_of(bound.model)
-    found = _matched(chosen, bound.plant, model, records, others, told, signs)
+    found = frequency_identification(bound.plant, _matched(chosen, model, records, told), others, signs)
     found = _with_doubts(found, inputs)
     truth = None if true is None else truth_of(true, operating_point_model(bind(true), names, means), found.fit)
     return Done(found, truth)
@@ -164,17 +165,10 @@ def _with_doubts(found: FrequencyIdentification, inputs: Inputs) -> FrequencyIde
     return replace(found, notes=(*inputs.notes, *found.notes), doubt=inputs.doubt)
 
 
-def _matched(
-    chosen: argparse.Namespace,
-    plant: Plant,
-    model: LinearModel,
-    records: Sequence[Record],
-    held: Sequence[Record],
-    told: Told,
-    signs: Mapping[str, str] | None = None,
-) -> FrequencyIdentification:
+def _matched(chosen: argparse.Namespace, model: LinearModel, records: Sequence[Record], told: Told) -> FrequencyFit:
+    """What matches the records' responses best, over the band that was chosen."""
     band = None if chosen.band_rad_s is None else (chosen.band_rad_s[0], chosen.band_rad_s[1])
-    return frequency_identification(plant, match(model, records, band, seed=chosen.seed, told=told), held, signs)
+    return match(model, records, band, seed=chosen.seed, told=told)
 
 
 def _read(
