@@ -11,10 +11,10 @@ from scipy.signal import lfilter
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.filter.filter_input import Added, spread
-from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
+from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass, slope_of
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, nominal_hypothesis, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, noise_of, nominal_hypothesis, passes
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from diagnosis.library.reading_noise import ReadingNoise
 from diagnosis.search.lost_frames import drives
@@ -323,6 +323,17 @@ def test_what_was_not_read_answers_nothing(case: Case, fitted: Fit) -> None:
     found = linearisation.answer([np.full((len(y), 1), 0.01).__getitem__], 1).reshape(len(y), -1)
     assert np.all(found[PART : PART + 100] == 0.0)
     assert np.all(np.abs(found[PART - 1]) + np.abs(found[PART + 101]) > 0.0)
+
+
+def test_a_noise_changes_with_a_number_by_what_one_of_it_adds(case: Case, settled: Hypothesis) -> None:
+    # Truth: of intensities q (1 + x) the slope by x is q, whatever the step; what does not go by x has none.
+    (flight,) = case.flights
+    noise = noise_of(case, case.library.compiled(()), flight, settled)
+    slope = slope_of(noise, replace(noise, q=1.25 * noise.q), 0.25)
+    assert np.allclose(slope.q, noise.q, rtol=1e-12)
+    assert np.any(noise.q > 0.0)
+    assert not np.any(slope.p0)
+    assert not np.any(slope.forget)
 
 
 def test_the_quick_exponential_is_e_to_the_x() -> None:
