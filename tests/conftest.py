@@ -21,7 +21,7 @@ sys.dont_write_bytecode = False
 @pytest.fixture(scope="session")
 def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """What `make run` leaves, by one process for all tests and all workers of pytest, and what it prints. Nobody may write into it."""
-    from tests.docs import readme  # which needs all of twinlaw, where many tests need little
+    from tests.docs.reading import readme  # which needs all of twinlaw, where many tests need little
 
     base = tmp_path_factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base

@@ -9,7 +9,7 @@ from codegen.law import generate_law
 from recordings.mapping.mapping import load_mapping
 from records.plant import load_plant
 from sim.bind import bind
-from tests.docs.commands import PAGES, fenced, tongues
+from tests.docs.reading.commands import PAGES, fenced, tongues
 from tests.law_tables import ce150_table
 from tests.test_project import ROOT
 from toolchain.host import CText, build_shared

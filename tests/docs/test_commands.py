@@ -18,7 +18,7 @@ import pytest
 
 from recordings.datasets.files import datasets_folder
 from rig.emulator.pty_port import PtyBoard
-from tests.docs.commands import PAGES, calls, checkout, commands, fenced, indented, mentions
+from tests.docs.reading.commands import PAGES, calls, checkout, commands, fenced, indented, mentions
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 from twinlaw.cli.completion import Command, command_tree

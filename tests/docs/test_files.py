@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from tests.docs.commands import PAGES
+from tests.docs.reading.commands import PAGES
 from tests.test_project import ROOT
 
 FILE = re.compile(r"`((?:[\w.-]+/)*[\w-]+\.(?:py|toml|c|h|md|ld|svg|yml))`")

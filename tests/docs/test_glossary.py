@@ -2,7 +2,7 @@
 
 import re
 
-from tests.docs.commands import PAGES
+from tests.docs.reading.commands import PAGES
 from tests.test_project import ROOT
 
 CITED = re.compile(r"(\S+) \((1[89]\d\d|20\d\d)\)")

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from tests.angles import few_angles
-from tests.docs.json_page import PAGE, ROWS, is_as_documented, keys
-from tests.docs.results import result
+from tests.docs.reading.json_page import PAGE, ROWS, is_as_documented, keys
+from tests.docs.reading.results import result
 from tests.twinlaw.verbs.crews import works_here
 from twinlaw.cli.completion import command_tree
 from twinlaw.command import build_parser, main

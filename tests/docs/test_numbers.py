@@ -5,8 +5,8 @@ from collections import Counter
 
 import pytest
 
-from tests.docs.commands import PAGES
-from tests.docs.numbers import agrees, held, numbers, scopes, value
+from tests.docs.reading.commands import PAGES
+from tests.docs.reading.numbers import agrees, held, numbers, scopes, value
 
 COUNTED_TO = 12
 # Pages whose every number, but for counting and for what is given with its source, is one of the code's.

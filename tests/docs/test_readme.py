@@ -13,11 +13,11 @@ from sim.bind import bind
 from sim.equilibrium import equilibrium
 from sim.loop import fly_law
 from sim.manoeuvres import Leg, manoeuvre, on_encoder_steps
-from tests.docs import readme
+from tests.docs.reading import readme
 from twinlaw.verbs import VERBS
 
 PAGE = readme.README.read_text(encoding="utf-8")
-RENEW = "renew it: .venv/bin/python -m tests.docs.readme"
+RENEW = "renew it: .venv/bin/python -m tests.docs.reading.readme"
 
 
 def without_figures(text: str) -> list[str]:

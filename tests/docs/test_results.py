@@ -10,10 +10,10 @@ import pytest
 
 from recordings.datasets.files import datasets_folder
 from records.text.units import unit_of
-from tests.docs.commands import fenced
-from tests.docs.numbers import NUMBER, agrees, last_digit
-from tests.docs.results import COMMANDS, FOLDER, HOURS, made, result
-from tests.docs.tables import line
+from tests.docs.reading.commands import fenced
+from tests.docs.reading.numbers import NUMBER, agrees, last_digit
+from tests.docs.reading.results import COMMANDS, FOLDER, HOURS, made, result
+from tests.docs.reading.tables import line
 from tests.docs.test_files import KNOWN
 from tests.real_rigs import parts
 from tests.test_project import ROOT

@@ -5,7 +5,7 @@ from itertools import product
 
 import pytest
 
-from tests.docs.readme import README, shown
+from tests.docs.reading.readme import README, shown
 from tests.plants import bound
 from tests.test_project import ROOT
 from twinlaw.workflows.chain.designing import design_plant

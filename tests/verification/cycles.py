@@ -15,7 +15,7 @@ from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
-from tests.docs.tables import keep
+from tests.docs.reading.tables import keep
 from tests.law_tables import STATE_WORDS
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.designing import design_controller

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from codegen.law import generate_law
 from rig.emulator.board import EmulatedBoard
 from rig.programming.image import build_firmware
-from tests.docs.tables import keep
+from tests.docs.reading.tables import keep
 from tests.law_tables import STATE_WORDS
 from tests.verification.cycles import stimuli, subnormals
 from twinlaw.workflows.chain.designing import design_controller

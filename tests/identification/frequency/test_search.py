@@ -6,7 +6,7 @@ import pytest
 from identification.frequency.match.cost import N_OMEGA, chosen_points, coherence_weight, good_range, residual, target
 from identification.frequency.match.secant import restarted, secant_search
 from identification.frequency.responses.conditioned import Responses
-from tests.identification.valley import valley
+from tests.identification.fit.valley import valley
 
 
 def test_secants_find_the_end_of_a_bent_valley_without_a_derivative():

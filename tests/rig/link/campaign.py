@@ -12,7 +12,7 @@ from typing import Any
 
 from records.protocol import PROTOCOL
 from rig.link.frames import Frame, FrameReceiver, encode_frame
-from tests.docs.tables import keep
+from tests.docs.reading.tables import keep
 from tests.firmware.box import DIGEST, REFUSALS, word
 from tests.rig.link.hostile_line import Channel
 from tests.rig.link.hostile_line_faults import (

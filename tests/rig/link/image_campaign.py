@@ -19,7 +19,7 @@ from rig.flight.line_law import LineLaw
 from rig.link.client import BoardClient
 from rig.link.numbers import numbers_of
 from rig.link.port import open_port
-from tests.docs.tables import keep
+from tests.docs.reading.tables import keep
 from tests.law_tables import ce150_table
 from tests.rig.images import emulated_url
 from tests.rig.link.campaign import REFUSALS, usual_faults

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from rig.link.port import open_port
-from tests.docs.tables import line
+from tests.docs.reading.tables import line
 from tests.law_tables import ce150_table
 from tests.rig.link.hostile_line import HostileLine
 from tests.rig.link.hostile_line_faults import AtByte, Direction

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.docs.tables import line
+from tests.docs.reading.tables import line
 from tests.rig.link.campaign import REFUSALS, Campaign, flown, rows
 from tests.soak import SOAK
 

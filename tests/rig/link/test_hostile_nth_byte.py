@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from tests.docs.tables import grouped
+from tests.docs.reading.tables import grouped
 from tests.rig.link.hostile_line import HostileLine
 from tests.rig.link.hostile_line_faults import AtByte, Direction, FrameFault, Passing
 from tests.rig.link.hostile_sessions import complete_or_one_line, connect, counted_steps, session

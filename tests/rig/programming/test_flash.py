@@ -25,7 +25,7 @@ from rig.programming.flash import (
     openocd_command,
 )
 from rig.programming.image import build_firmware
-from tests.docs.json_page import is_as_documented
+from tests.docs.reading.json_page import is_as_documented
 from tests.law_tables import ce150_table
 from tests.soak import sampled
 from twinlaw.command import main

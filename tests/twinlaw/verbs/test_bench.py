@@ -9,7 +9,7 @@ import pytest
 from identification.proof import bench as fit_bench
 from records.loops import LOOPS, Loop
 from sim.bench import comparison, compiled_peers, peak
-from tests.docs.json_page import is_as_documented
+from tests.docs.reading.json_page import is_as_documented
 from tests.plants import stated_table
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb

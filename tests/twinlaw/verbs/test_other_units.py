@@ -9,7 +9,7 @@ import pytest
 
 from design.operating_points import design_points
 from design.settings import read_settings
-from tests.docs.json_page import is_as_documented
+from tests.docs.reading.json_page import is_as_documented
 from tests.own_plants import BOAT, HEATER, NO_AXIS, RATE_ONLY, TANKS, OwnPlant
 from tests.soak import sampled
 from twinlaw.command import main

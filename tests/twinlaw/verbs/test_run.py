@@ -23,7 +23,7 @@ from sim.columns import log_columns
 from sim.manoeuvres import hop
 from sim.plants import MODELS
 from sim.tracking import tracking
-from tests.docs.json_page import is_as_documented
+from tests.docs.reading.json_page import is_as_documented
 from tests.soak import SOAK
 from twinlaw.command import main
 from twinlaw.verbs import verify

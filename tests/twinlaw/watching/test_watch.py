@@ -22,7 +22,7 @@ from rig.emulator.pty_port import PtyBoard
 from rig.link.client import BoardClient
 from sim.columns import log_columns
 from sim.plants import MODELS
-from tests.docs.json_page import is_as_documented
+from tests.docs.reading.json_page import is_as_documented
 from tests.soak import sampled
 from tests.twinlaw.watching.conftest import PATIENT_S, PLANT, Open, Watch
 from twinlaw.command import main

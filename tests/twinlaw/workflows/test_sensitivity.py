@@ -17,7 +17,7 @@ from records.log import save_log
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 from tests.blind.test_score import answer, effect, sealed, truth, write
-from tests.docs.json_page import is_as_documented
+from tests.docs.reading.json_page import is_as_documented
 from tests.plants import bound, stated_table
 from tests.test_project import ROOT
 from twinlaw.command import main

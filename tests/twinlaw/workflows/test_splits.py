@@ -12,7 +12,7 @@ from records.errors import BadInput
 from records.log import RunLog, load_log, save_log
 from sim.columns import log_columns
 from tests.diagnosis.arm import arm, arm_log
-from tests.docs.json_page import is_as_documented
+from tests.docs.reading.json_page import is_as_documented
 from tests.plants import PLANTS
 from twinlaw.command import main
 from twinlaw.pages.diagnose.splits import HEADING, agreement, markdown, rows

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from identification.fit.levenberg_marquardt import FIRST, LEAST, MARQUARDT, MOST, NIELSEN, trials
-from tests.identification.valley import valley
+from tests.identification.fit.valley import valley
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """The parts of README.md that a run makes: what `make run` prints, and the plot of its flight.
 
-`.venv/bin/python -m tests.docs.readme` runs the chain and writes both anew.
+`.venv/bin/python -m tests.docs.reading.readme` runs the chain and writes both anew.
 """
 
 import re
@@ -14,7 +14,7 @@ from sim.columns import log_columns
 from sim.plants import MODELS
 from twinlaw.pages.run.report import flight_plot
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 README, PLOT = ROOT / "README.md", ROOT / "docs" / "flight.svg"
 _BLOCK = re.compile(r"(<!-- output of make run -->\n```\n)(.*?)(```\n)", flags=re.DOTALL)
 

@@ -1,6 +1,6 @@
 """Results that pages state figures of: each is what a command prints for a program, kept in docs/results.
 
-`.venv/bin/python -m tests.docs.results NAME ...` runs the commands of some of them, all without a name, and writes their files anew.
+`.venv/bin/python -m tests.docs.reading.results NAME ...` runs the commands of some of them, all without a name, and writes the files anew.
 """
 
 import json

@@ -11,9 +11,9 @@ import pytest
 from design.law import FloatLaw
 from design.settings import read_settings
 from records.table import ControllerTable
-from tests.design.flying import ELEVATION_DEG, Flown, fly, manoeuvre
 from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, helicopter, settings_for, table_for
-from tests.design.trap_laws import CLAMPED, FEEDBACK, TOTAL, DirectLaw
+from tests.design.law.flying import ELEVATION_DEG, Flown, fly, manoeuvre
+from tests.design.law.trap_laws import CLAMPED, FEEDBACK, TOTAL, DirectLaw
 from tests.soak import sampled
 
 E4, E6, E8, E12 = (equal(pole) for pole in (-4.0, -6.0, -8.0, -12.0))

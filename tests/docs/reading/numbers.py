@@ -11,7 +11,7 @@ Left of = stands a number as the page writes it, right of it an expression witho
 - `protocol.NAME`, a constant of the serial line's declaration;
 - `firmware.NAME`, a number that the C of the firmware defines;
 - `PLANT.section.key` of plants/PLANT.toml;
-- `results.NAME.key...` of docs/results/NAME.json, which a command wrote (tests/docs/results.py); a page rounds it, and may round others of
+- `results.NAME.key...` of docs/results/NAME.json, which a command wrote (results.py beside this); a page rounds it, and may round others of
   its kind alike; a key's hyphen is written _;
 - len, min, max, round of these.
 
@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 
 from records.protocol import PROTOCOL
-from tests.docs.results import result
+from tests.docs.reading.results import result
 from tests.test_project import ROOT
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
