@@ -16,7 +16,7 @@ from records.reasons import Note
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
-ROUNDED = 1e-6  # of a sample period, that a file may state it wrong by
+PERIOD_ROUNDED = 1e-6  # of a sample period, that a file may state it wrong by
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ def _every(log: RunLog, rate_rad_s: float) -> int:
     """The factor by which a log may be thinned: its rows are then a time constant of the plant apart, the shortest, or COARSEST_S. The
     filter follows what moves between them by the equations."""
     apart_s = min(thresholds.COARSEST_S, 1.0 / rate_rad_s if rate_rad_s > 0.0 else np.inf)
-    return int(apart_s / log.sample_period_s + ROUNDED)
+    return int(apart_s / log.sample_period_s + PERIOD_ROUNDED)
 
 
 def _one_in(used: Rows, factor: int) -> NDArray[np.int64]:

@@ -12,7 +12,7 @@ from sim.bind import BoundPlant
 from sim.model import Model
 from sim.simulate import simulate
 
-WINDOW_S = 1.0
+FREE_RUN_S = 1.0
 SMOOTHED_ROWS = 11  # odd; over them an angle is taken for a parabola
 GAP = 1.5  # sample periods between two rows that do not belong to one window
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ class Windows:
 def windows_of(bound: BoundPlant, logs: Sequence[RunLog]) -> Windows:
     """All whole windows without missing rows; logs of one sample period, which is taken for exact."""
     period_s = logs[0].sample_period_s
-    rows = round(WINDOW_S / period_s)
+    rows = round(FREE_RUN_S / period_s)
     cut = [_cut(log, states_of(bound, log), rows) for log in logs]
     x0, u, y = (np.concatenate([part[index] for part in cut]) for index in range(3))
     return Windows(period_s * np.arange(rows, dtype=np.float64), x0, u, y)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of
 
-Span = tuple[int, int]  # rows of a log: from which on, and until before which
+Stretch = tuple[int, int]  # rows of a log: from which on, and until before which
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class ColumnWiring:
     outputs: Sequence[int]
     input_signs: Sequence[float]
     output_signs: Sequence[float]
-    rows: Mapping[int, Span] | None = None
+    rows: Mapping[int, Stretch] | None = None
     cost: float = 0.0
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.column_wiring import ColumnWiring, Span, rewired, silenced, turned_signs
+from diagnosis.decide.column_wiring import ColumnWiring, Stretch, rewired, silenced, turned_signs
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis, passes
@@ -15,7 +15,7 @@ from diagnosis.validate.prediction import WINDOW_S
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
-NOWHERE: Span = (0, 0)
+NOWHERE: Stretch = (0, 0)
 
 
 def turned_within(case: Case) -> list[ColumnWiring]:
@@ -39,7 +39,7 @@ def _within(case: Case, sign: ColumnWiring) -> ColumnWiring | None:
     )
 
 
-def _span_of(alone: Case, stated: Hypothesis, sign: ColumnWiring) -> Span:
+def _span_of(alone: Case, stated: Hypothesis, sign: ColumnWiring) -> Stretch:
     """The rows of one log in which a turned sign lets the plant follow it better; none where they begin and end within a second, in which
     nobody plugs in and back, or the plant follows it better yet without the column there: what comes late, or does less than it says, is
     no turned sign."""
@@ -48,7 +48,7 @@ def _span_of(alone: Case, stated: Hypothesis, sign: ColumnWiring) -> Span:
     if straight is None or turned is None:
         return NOWHERE
 
-    def likelihood(span: Span, wiring: ColumnWiring = sign) -> float:
+    def likelihood(span: Stretch, wiring: ColumnWiring = sign) -> float:
         return likelihood_of(rewired(alone, replace(wiring, rows={flight.number: span})), stated)
 
     count = len(straight)
@@ -67,7 +67,7 @@ def _by_row(alone: Case, stated: Hypothesis) -> Array | None:
     return None if runs is None else -0.5 * np.nansum(runs[0].w ** 2 + np.log(runs[0].s), axis=1)
 
 
-def _likeliest(gains: Array) -> Span:
+def _likeliest(gains: Array) -> Stretch:
     """The rows, to the log's end, from its beginning, all, or between, that gain most beyond what the choice costs; none where none do."""
     count, total = len(gains), np.append(0.0, np.cumsum(gains))
     until = int(np.argmax(total - np.minimum.accumulate(total)))
@@ -76,12 +76,12 @@ def _likeliest(gains: Array) -> Span:
     return max(spans, key=lambda span: total[span[1]] - total[span[0]] - _cost(span, count))
 
 
-def _cost(span: Span, count: int) -> float:
+def _cost(span: Stretch, count: int) -> float:
     """What the choice of these rows of `count` costs, in nats: a sign may turn at any of them."""
     return sum(0 < end < count for end in span) * float(np.log(count))
 
 
-def _moved(span: Span, end: int, count: int, likelihood: Callable[[Span], float]) -> Span:
+def _moved(span: Stretch, end: int, count: int, likelihood: Callable[[Stretch], float]) -> Stretch:
     """The same with one end where the log is likeliest, by ever smaller steps: a filter led astray needs some rows to come back."""
     best, step = likelihood(span), count // 2
     while step:
@@ -105,7 +105,7 @@ def in_words(case: Case, wiring: ColumnWiring, names: Sequence[str]) -> str:
     )
 
 
-def _times(flight: FilteredLog, span: Span) -> str:
+def _times(flight: FilteredLog, span: Stretch) -> str:
     (since, until), t_s = span, flight.log.t_s
     if until == len(t_s):
         return f" from {t_s[since]:.6g} s on" if since else ""

@@ -46,9 +46,9 @@ def improved_plant(case: Case, found: FittedHypothesis) -> Plant:
         parameters[spec.name] = entry
     plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
-    known = {name: known_beginning(case, case.library.effects[name]) for name in _supposed(case, found)}
-    supposed = {name: {**fit.hypothesis.effects[name], **begins} for name, begins in known.items()}
-    effects = {**case.draws, **supposed}  # a draw of these very flights comes before the stated one
+    known = {name: known_beginning(case, case.library.effects[name]) for name in _carried(case, found)}
+    fitted = {name: {**fit.hypothesis.effects[name], **begins} for name, begins in known.items()}
+    effects = {**case.draws, **fitted}  # a draw of these very flights comes before the stated one
     if not effects:
         return plant
     sizes = {name: dict(case.stated_sd[name]) for name in case.draws}
@@ -77,8 +77,8 @@ def estimates(case: Case, found: FittedHypothesis) -> Mapping[str, Mapping[str, 
     spread = deviations(fit)[len(fit.hypothesis.theta) :]
     free = zip(fit.free[::-1], spread[::-1], strict=True)  # of what each log has for itself the first log's stay
     sd = {(entry.effect, entry.parameter.symbol): s * entry.scale for entry, s in free}
-    supposed = _supposed(case, found)
-    for name in supposed:
+    names = _carried(case, found)
+    for name in names:
         beside = _beside_slopes(case, fit, case.library.effects[name])
         sd |= {(name, symbol): deviation for symbol, deviation in beside.items()}
     return {
@@ -91,11 +91,11 @@ def estimates(case: Case, found: FittedHypothesis) -> Mapping[str, Mapping[str, 
             for symbol, parameter in case.library.effects[name].parameter.items()
             if parameter.role is not Role.BEGINNING
         }
-        for name in supposed
+        for name in names
     }
 
 
-def _supposed(case: Case, found: FittedHypothesis) -> list[str]:
+def _carried(case: Case, found: FittedHypothesis) -> list[str]:
     """The effects of a model: noise is none but where it was named."""
     return [
         name

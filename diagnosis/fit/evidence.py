@@ -36,11 +36,11 @@ def log_evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     prior = sum(-np.log(decisions.SIZE_SD) if is_size else -decisions.SHAPE_COST for _, is_size in new)
     known = np.setdiff1d(np.arange(len(found.information)), [row for row, is_size in new if not is_size])
     sign, volume = np.linalg.slogdet(found.information[np.ix_(known, known)])
-    supposed = [effects[name] for name in found.hypothesis.effects]
+    carried = [effects[name] for name in found.hypothesis.effects]
     prior -= WAVES_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
-    rough = [p.is_size for effect in supposed for p in effect.parameters if p.rough]
+    rough = [p.is_size for effect in carried for p in effect.parameters if p.rough]
     prior -= sum(STEPS_COST if is_size else decisions.SHAPE_COST for is_size in rough)
-    prior -= decisions.TAKEN_IN * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
+    prior -= decisions.TAKEN_IN * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in carried))
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior
 
 

@@ -70,8 +70,8 @@ def _rest(case: Case, hypothesis: Hypothesis) -> list[Number]:
 def _rubs(case: Case, hypothesis: Hypothesis) -> bool:
     """Whether any axis has dry friction, stated or supposed."""
     library = case.library
-    supposed = any(library.effects[name].holds_at_rest for name in hypothesis.effects)
-    return supposed or len(library.frictionless) < len(library.bound.model.axes)
+    is_added = any(library.effects[name].holds_at_rest for name in hypothesis.effects)
+    return is_added or len(library.frictionless) < len(library.bound.model.axes)
 
 
 def _noise(axis: int, hypothesis: Hypothesis) -> float:

@@ -143,7 +143,7 @@ def _with_ratios(case: Case, linearisation: Linearisation, answers: Sequence[Arr
     columns = list(drives(case))
 
     def judged(flight: FilteredLog, unit: Array, w: Array) -> FilteredLog:
-        before = _supposed(case, flight.filter_input, linearisation.fit.hypothesis)
+        before = _prior_loss(case, flight.filter_input, linearisation.fit.hypothesis)
         ratios, power = _ratios(flight.filter_input.u, columns, unit, w, before, _judged(flight.filter_input), sweeps)
         return replace(flight, filter_input=replace(flight.filter_input, lost=ratios, loss_power=power))
 
@@ -182,7 +182,7 @@ def _unfolded(answers: Array) -> Array:
     return np.where((later < len(answers))[:, :, None, None], own, 0.0)
 
 
-def _supposed(case: Case, filter_input: FilterInput, hypothesis: Hypothesis) -> Array:
+def _prior_loss(case: Case, filter_input: FilterInput, hypothesis: Hypothesis) -> Array:
     """The probability with which each frame's loss is supposed already."""
     losses = case.library.losses
     if losses is None or losses.name not in hypothesis.effects:

@@ -128,8 +128,8 @@ def _unstated(case: Case, hypothesis: Hypothesis, axis: str) -> Iterator[Effect]
 
 def _is_held(case: Case, hypothesis: Hypothesis, axis: str) -> bool:
     """Whether dry friction of an axis is supposed."""
-    supposed = (case.library.effects[name] for name in hypothesis.effects)
-    return any(effect.place == axis and effect.holds_at_rest for effect in supposed)
+    carried = (case.library.effects[name] for name in hypothesis.effects)
+    return any(effect.place == axis and effect.holds_at_rest for effect in carried)
 
 
 def _likeliest(case: Case, hypothesis: Hypothesis, ways: Sequence[Effect], value: float) -> tuple[Hypothesis, float]:

@@ -14,7 +14,7 @@ from diagnosis import decisions
 from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.validate.prediction import WINDOW_S, Span, predictions
+from diagnosis.validate.prediction import WINDOW_S, FreeRun, predictions
 from logcheck.breaks import gaps
 from logcheck.thresholds import BRIDGED_ROWS
 from records.log import RunLog
@@ -87,18 +87,18 @@ class Lookahead:
         columns = [column[np.isfinite(column)] for column in error.T]
         return tuple(float(np.sqrt(np.mean(column**2))) if column.size else None for column in columns)
 
-    def _due(self, first: int) -> list[Span]:
+    def _due(self, first: int) -> list[FreeRun]:
         """Free runs to the rows from `first` on that are EVERY_S after the last one."""
         t_s = np.array([row.t_s for row in self._rows])
         spans = []
         for row in range(first, len(t_s)):
             begin = int(np.searchsorted(t_s, t_s[row] - WINDOW_S + 1e-9, side="right")) - 1
             if t_s[row] >= self._asked_s + EVERY_S - 1e-9 and begin >= 0 and t_s[begin] - t_s[0] >= decisions.SETTLE_S:
-                spans.append(Span(begin, row, row + 1))
+                spans.append(FreeRun(begin, row, row + 1))
                 self._asked_s = float(t_s[row])
         return spans
 
-    def _predicted(self, spans: Sequence[Span]) -> tuple[Ahead, ...]:
+    def _predicted(self, spans: Sequence[FreeRun]) -> tuple[Ahead, ...]:
         rows = self._rows
         log = RunLog(
             columns=log_columns(self._bound.model),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.closed_loop import MODEL_VARIANTS
-from diagnosis.validate.prediction import Span, predictions, settled_after_s
+from diagnosis.validate.prediction import FreeRun, predictions, settled_after_s
 from records.diagnosis import Shrinkage
 
 Array = NDArray[np.float64]
@@ -51,11 +51,11 @@ def _errors(case: Case, hypothesis: Hypothesis) -> Array | None:
     return np.concatenate(found)
 
 
-def _rest_of(flight: FilteredLog) -> Span | None:
+def _rest_of(flight: FilteredLog) -> FreeRun | None:
     """From the first row at which the filter can tell the speeds to the end; None in a log that is shorter."""
     t_s = flight.log.t_s
     start = int(np.searchsorted(t_s, t_s[0] + settled_after_s(t_s)))
-    return Span(start, start, len(t_s)) if start < len(t_s) - 1 else None
+    return FreeRun(start, start, len(t_s)) if start < len(t_s) - 1 else None
 
 
 def _mean_squares(errors: Array) -> Array:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis
-from diagnosis.validate.prediction import WINDOW_S, Span, predictions, windows
+from diagnosis.validate.prediction import WINDOW_S, FreeRun, predictions, windows
 from sim.bind import BoundPlant
 from sim.kernel.reference import reference
 
@@ -36,7 +36,7 @@ def _squares(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> tuple[A
     """Squared errors (rows, outputs) of the predictions, and of holding each window's first reading, over the same rows."""
     y, held = flight.log.y, np.full_like(flight.log.y, np.nan)
     spans = [
-        Span(first, first, last) for first, last in windows(flight.log.t_s, foreseen_s(case.library.bound, flight))
+        FreeRun(first, first, last) for first, last in windows(flight.log.t_s, foreseen_s(case.library.bound, flight))
     ]
     for span in spans:
         held[span.first : span.last] = y[span.first]

@@ -25,7 +25,7 @@ UNSEEN_VARIANCE = 1e8  # variance of a reading that the state shall not follow, 
 
 
 @dataclass(frozen=True)
-class Span:
+class FreeRun:
     """A free run from the state estimated at row `start`; its rows from `first` to the one before `last` are wanted."""
 
     start: int
@@ -33,7 +33,9 @@ class Span:
     last: int
 
 
-def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: Sequence[Span] | None = None) -> Array:
+def predictions(
+    case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: Sequence[FreeRun] | None = None
+) -> Array:
     """Predicted readings (rows, outputs) of a log by free runs over `spans`, by default its windows of a second.
 
     NaN in rows of no span, and where the filter fails or cannot yet tell.
@@ -56,7 +58,7 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
     ahead = Noise(none, np.zeros_like(noise.rub), none, none, noise.forget, 0.0)
     slots = [place if place < outputs else -1 for place in range(len(library.outputs))]
     t_s = flight.log.t_s
-    for span in [Span(first, first, last) for first, last in windows(t_s)] if spans is None else spans:
+    for span in [FreeRun(first, first, last) for first, last in windows(t_s)] if spans is None else spans:
         begin = int(np.searchsorted(filter_input.t_s, t_s[span.start] - max(lateness) + 1e-9, side="right")) - 1
         end = int(np.searchsorted(filter_input.t_s, t_s[span.last - 1] + 1e-9, side="right"))
         if begin < 0 or t_s[span.start] < t_s[0] + settled_after_s(t_s):

@@ -9,7 +9,7 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.ahead import EVERY_S, LIVE_PROCESS_NOISE, Ahead, Lookahead
-from diagnosis.validate.prediction import Span, predictions
+from diagnosis.validate.prediction import FreeRun, predictions
 from records.log import RunLog
 from records.logs.live import LiveRow
 from sim.added_effects import with_effects
@@ -95,7 +95,7 @@ def test_it_is_the_prediction_of_the_whole_log(plant: BoundPlant, fly: Fly) -> N
     found = fed(Lookahead(plant), rows)
     places = [round(entry.t_s / 0.01) for entry in found]
     case = make_case(effect_library(plant), [log], stated=plant)
-    spans = [Span(place - 100, place, place + 1) for place in places]
+    spans = [FreeRun(place - 100, place, place + 1) for place in places]
     whole = predictions(case, case.flights[0], nominal_hypothesis(case, LIVE_PROCESS_NOISE), spans=spans)[places]
     assert np.abs(whole - [entry.predicted for entry in found]).max() < 0.5 * STEP_RAD
 

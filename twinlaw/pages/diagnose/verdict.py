@@ -13,7 +13,7 @@ from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, l
 from twinlaw.pages.page import as_sentence
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
-LEAST_TOLD = 0.01  # share of the error below which its going is not told
+LEAST_GONE = 0.01  # share of the error below which its going is not told
 WORTH_A_THOUGHT = 0.05  # from which the next best is told
 MOVED = ("moved_parameter", "moved_effect")  # kinds of notes
 _NOT_TOLD = {"no gap": "No gap is told", "cannot tell": "Whether the plant file lacks anything cannot be told"}
@@ -51,7 +51,7 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
     gone = diagnosis.shrinkage.fraction if diagnosis.shrinkage else None
     gain = (
         ""
-        if gone is None or gone < LEAST_TOLD
+        if gone is None or gone < LEAST_GONE
         else f", and with it in the model {percent(gone)} of the removable error on the hold-out logs is gone"
     )
     return f"The rig has what the plant file lacks: {likely}{names}{sure}{gain}.{_rival(diagnosis, chosen)}"

@@ -14,7 +14,7 @@ from twinlaw.workflows.diagnose.questions import Question
 
 LONGEST_NAME = 100  # letters, of a folder: file systems take 255
 LEAST_PART_S = 4.0  # a hold-out says nothing in its first 2 s, and then once a second
-PARTS = 3  # six splits; with two there would be two
+LOG_PARTS = 3  # six splits; with two there would be two
 
 
 def splits_of(plant: Path, logs: Sequence[Path], most: int) -> list[Question]:
@@ -54,7 +54,7 @@ def cut(path: Path, columns: LogColumns, folder: Path) -> list[Path]:
     """
     log = load_log(path, columns)
     length_s = float(log.t_s[-1] - log.t_s[0])
-    parts = next((count for count in range(PARTS, 1, -1) if length_s >= count * LEAST_PART_S), 0)
+    parts = next((count for count in range(LOG_PARTS, 1, -1) if length_s >= count * LEAST_PART_S), 0)
     if not parts:
         expected = f"{2 * LEAST_PART_S:g} s or more"
         raise BadInput("run log", str(path), f"{length_s:.3g} s", expected, "name a second log, or record for longer")
