@@ -48,9 +48,7 @@ def test_the_plot_is_labelled_as_the_run_s(ran: tuple[Path, str]) -> None:
 
 def test_what_it_says_of_the_axes_is_what_the_table_flies(ran: tuple[Path, str]) -> None:
     # Truth: the flight's push of the elevation, and steps of both axes at all delays that the page speaks of; to the digits of the page.
-    said = re.search(
-        r"pushes the resting elevation by ([\d.]+) deg, and begun within\s+(\d+) s of .* up to (\d+) %", PAGE
-    )
+    said = re.search(r"pushes the resting elevation by ([\d.]+) deg\. Begun within\s+(\d+) s of .* up to (\d+) %", PAGE)
     assert said is not None
     pushed_deg, within_s, percent = map(float, said.groups())
     pushed = re.search(r"^psi_rad .*? ([\d.]+) deg +u_M_V", ran[1], flags=re.MULTILINE)
