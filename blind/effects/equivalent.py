@@ -45,6 +45,11 @@ def fitted(formula: Callable[[Array], Array], target: Array, start: Sequence[flo
     return np.asarray(solved.x)
 
 
+def below_largest(a: float, shape: Mapping[str, float], target: Array) -> list[float]:
+    """Where the fit of a limit starts: one above all that came through would have no slope and stay there."""
+    return [min(a, 0.99 * float(np.abs(target).max()))]
+
+
 def scale_of(formula: Array, target: Array) -> float:
     """The factor that brings `formula` (n,) nearest to `target` (n,), by least squares."""
     return float(formula @ target / (formula @ formula))

@@ -20,7 +20,7 @@ def facts(result: Identification) -> dict[str, Any]:
         "at_bound": list(result.at_bound),
         "aids": [asdict(entry) for entry in result.aids],
         "correlation": {"names": list(result.belief.names), "rows": result.belief.correlation.round(9).tolist()},
-        "stages": [_stage_facts(title, stage) for title, stage in result.stages],
+        "stages": [_stage_facts(data.title, stage) for data, stage in result.stages],
         "unfinished": dict(result.unfinished),
         "holdout": [asdict(test) for test in result.holdout],
         "notes": list(result.notes),

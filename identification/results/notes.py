@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from identification.results.held import Leaning
-from identification.stages.estimate import Estimate
+from identification.stages.estimate import Data, Estimate
 from identification.uncertainty.identifiability import Direction
 from identification.uncertainty.residuals import ResidualTest
 from records.text.uncertain import to_sd
@@ -14,31 +14,31 @@ MOST_DIRECTIONS = 3
 MOST_HELD = 4
 
 
-def stage_notes(title: str, stage: Estimate, units: Mapping[str, str]) -> tuple[str, ...]:
+def stage_notes(data: Data, stage: Estimate, units: Mapping[str, str]) -> tuple[str, ...]:
     """What one stage cannot tell, by direction; what contradicts earlier data, by parameter, in its unit; residuals that are no sensor's
     errors.
     """
-    blind = [f"{title}: {_direction(entry)}" for entry in stage.unseen[:MOST_DIRECTIONS]]
+    blind = [f"{data}: {_direction(entry)}" for entry in stage.unseen[:MOST_DIRECTIONS]]
     if len(stage.unseen) > MOST_DIRECTIONS:
-        blind.append(f"{title}: {len(stage.unseen) - MOST_DIRECTIONS} more such directions, in identification.json")
+        blind.append(f"{data}: {len(stage.unseen) - MOST_DIRECTIONS} more such directions, in identification.json")
     pulled = [
-        f"{title}: contradicts earlier data in {entry.name}: "
+        f"{data}: contradicts earlier data in {entry.name}: "
         f"{_apart(entry.before, 'before', entry.after, 'now', entry.sds, units.get(entry.name, ''))}"
         for entry in stage.contradictions[:3]
     ]
     against = [
-        f"{title}: {entry.run} contradicts {entry.against} in {entry.name}: "
+        f"{data}: {entry.run} contradicts {entry.against} in {entry.name}: "
         f"{_apart(entry.own, 'by itself', entry.others, f'by {entry.against}', entry.sds, units.get(entry.name, ''))}"
         for entry in stage.discords[:3]
     ]
     coloured = [
-        f"{test.run if test.run in title.split(', ') else title}: residuals of {test.channel} are correlated "
+        f"{test.run if test.run in data.logs else data}: residuals of {test.channel} are correlated "
         f"({chance(test.whiteness_p)}, rms {_in_its_unit(test)}); its samples count for fewer"
         for test in stage.residuals
         if not test.white
     ]
     bound = [
-        f"{title}: {name} ended at its bound; the data pull it further: widen --bounds, or doubt the model"
+        f"{data}: {name} ended at its bound; the data pull it further: widen --bounds, or doubt the model"
         for name in stage.at_bound
     ]
     return (*blind, *bound, *pulled, *against, *coloured)

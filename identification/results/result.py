@@ -9,7 +9,7 @@ from identification.experiments.table import aid_unit
 from identification.fit.belief import Belief
 from identification.results.notes import bound_warning, relative, stage_notes
 from identification.results.plant_file import numbers, with_belief, with_values
-from identification.stages.estimate import Estimate, interval_factor, interval_factors
+from identification.stages.estimate import Data, Estimate, interval_factor, interval_factors
 from identification.uncertainty.residuals import ResidualTest
 from records.plant import Plant, coefficient_names
 from sim.model import Model
@@ -43,7 +43,7 @@ class Estimated:
 
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides,
+    """The whole result; `stages` are (data, estimate) in the order in which they were made, `aids` what experiments needed besides,
     `holdout` how the identified plant predicts logs that were not used. `unfinished` are the values that a fit which was interrupted had
     come to; they are in the plant, without sd of their own. `remarks` tell what is odd in the data themselves, `flags` what makes
     the estimates doubtful, `doubt` what makes all of them so: columns that may be others, a clock, commands not known.
@@ -52,7 +52,7 @@ class Identification:
     plant: Plant
     estimates: tuple[Estimated, ...]
     belief: Belief
-    stages: tuple[tuple[str, Estimate], ...]
+    stages: tuple[tuple[Data, Estimate], ...]
     aids: tuple[Estimated, ...] = ()
     holdout: tuple[ResidualTest, ...] = ()
     unfinished: Mapping[str, float] = field(default_factory=dict)
@@ -60,9 +60,9 @@ class Identification:
     flags: tuple[str, ...] = ()
     doubt: str = ""
 
-    def stage_of(self, title: str) -> Estimate:
-        """The stage whose title has these words in it; raises StopIteration where there is none."""
-        return next(stage for told, stage in self.stages if title in told)
+    def stage_of(self, kind: str) -> Estimate:
+        """The stage of this kind of experiment; raises StopIteration where there is none."""
+        return next(stage for data, stage in self.stages if data.kind == kind)
 
     @property
     def at_bound(self) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ class Identification:
             *self.flags,
             *self._interrupted(),
             *self._unidentified(),
-            *(note for title, stage in self.stages for note in stage_notes(title, stage, units)),
+            *(note for data, stage in self.stages for note in stage_notes(data, stage, units)),
         )
 
     def _interrupted(self) -> tuple[str, ...]:
@@ -106,7 +106,7 @@ def _share(entry: Estimated) -> str:
 
 def identification(
     plant: Plant,
-    stages: Sequence[tuple[str, Estimate]],
+    stages: Sequence[tuple[Data, Estimate]],
     belief: Belief,
     aids: Sequence[tuple[Belief, float]] = (),
     begun: Mapping[str, float] | None = None,
@@ -137,12 +137,12 @@ def identification(
     return Identification(told, estimates, belief, tuple(stages), found)
 
 
-def _begun(stages: Sequence[tuple[str, Estimate]]) -> dict[str, float]:
+def _begun(stages: Sequence[tuple[Data, Estimate]]) -> dict[str, float]:
     """Where the first fit of each coefficient started, by name."""
     return {name: value for _, stage in reversed(stages) for name, value in stage.start.items()}
 
 
-def _loose_sds(stages: Sequence[tuple[str, Estimate]], belief: Belief) -> dict[str, float]:
+def _loose_sds(stages: Sequence[tuple[Data, Estimate]], belief: Belief) -> dict[str, float]:
     """The sd of each were it not held by its own size, by the stage that it belongs to, less what later ones told of it."""
     final = dict(zip(belief.names, belief.sd.tolist(), strict=True))
     loose = dict(final)

@@ -28,6 +28,19 @@ Array = NDArray[np.float64]
 LOOSER = 10.0  # than a parameter's size: what the data tell is no less certain for it
 
 
+@dataclass(frozen=True)
+class Data:
+    """What a fit was made from: its `title`, and how a cell of a table calls it; the `kind` of an experiment, or the names of `logs`."""
+
+    title: str
+    short: str
+    kind: str = ""
+    logs: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return self.title
+
+
 @dataclass(frozen=True, eq=False)
 class Estimate:
     """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests.

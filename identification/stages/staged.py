@@ -13,7 +13,7 @@ from identification.fit.problem import Told
 from identification.fit.ranges import Range, ranges_of
 from identification.runs.run import Run, coefficient_names, known_names
 from identification.search.methods import Search
-from identification.stages.estimate import Estimate, estimate
+from identification.stages.estimate import Data, Estimate, estimate
 from identification.stages.setup import check_mount, check_setup
 from records.experiment import Experiment
 from sim.bind import BoundPlant
@@ -45,10 +45,10 @@ def in_order(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
     return tuple(sorted(experiments, key=lambda entry: kind_of(entry).number))
 
 
-def title(experiment: Experiment) -> str:
+def data_of(experiment: Experiment) -> Data:
     """Number and name of an experiment."""
     kind = kind_of(experiment)
-    return f"experiment {kind.number}, {kind.title}"
+    return Data(f"experiment {kind.number}, {kind.heading}", kind.symbol or kind.title, experiment.kind)
 
 
 def identify_stage(

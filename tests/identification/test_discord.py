@@ -9,7 +9,7 @@ from identification.fit.ranges import ranges_of
 from identification.proof.bench import task
 from identification.results.notes import stage_notes
 from identification.runs.log_run import log_run
-from identification.stages.estimate import estimate
+from identification.stages.estimate import Data, estimate
 from identification.stages.logs import identify_logs
 from sim.loop import fly_law
 from sim.manoeuvres import flight
@@ -56,7 +56,7 @@ def test_the_log_of_another_rig_is_named_with_its_parameter(bound, other, run_of
     first = found.discords[0]
     assert (first.run, first.name) == ("log 2", "J_A")
     assert first.own / first.others == pytest.approx(1.2, rel=0.05)
-    notes = stage_notes("three logs", found, {"J_A": "kg m^2"})
+    notes = stage_notes(Data("three logs", "three logs"), found, {"J_A": "kg m^2"})
     assert any("log 2 contradicts the others in J_A" in note and " kg m^2 by the others, " in note for note in notes)
 
 
@@ -64,7 +64,9 @@ def test_two_logs_that_contradict_each_other_are_told_once(bound, other, run_of)
     runs = [run_of(bound, 1), run_of(other, 2)]
     found = estimate(runs, NAMES, ranges_of(bound, NAMES), NOTHING)
     assert [entry.name for entry in found.discords] == ["J_A"]
-    assert any("log 1 contradicts log 2 in J_A" in note for note in stage_notes("two logs", found, {}))
+    assert any(
+        "log 1 contradicts log 2 in J_A" in note for note in stage_notes(Data("two logs", "two logs"), found, {})
+    )
 
 
 @pytest.fixture(scope="module")

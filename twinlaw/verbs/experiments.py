@@ -47,7 +47,7 @@ def run(chosen: argparse.Namespace) -> int:
     truth = bound if chosen.as_stated else other_rig(bound, chosen.seed)
     files = []
     for kind, entry in kinds.items():
-        with console.stage(f"experiment {entry.number}: {entry.title}"):
+        with console.stage(f"experiment {entry.number}: {entry.heading}"):
             files.append(chosen.out / f"{entry.number:02d}-{kind}.toml")
             save_experiment(files[-1], perform(kind, truth, chosen.seed))
     files.append(chosen.out / "truth.toml")

@@ -11,7 +11,7 @@ from blind.effects import row
 from blind.effects.ce150_formulas import Formula
 from blind.effects.draws import Fixed, OneOf, Uniform
 from blind.effects.effect import Catalogue, Effect, Size, over
-from blind.effects.equivalent import relative
+from blind.effects.equivalent import below_largest, relative
 from blind.effects.visited import Visited
 from blind.rigs.real import beyond
 from blind.rigs.real import formulas as own
@@ -35,7 +35,7 @@ def _inputs(p: RealPlant, i: int) -> tuple[Effect, ...]:
         ),
         known(
             f"{at}.saturation", f"limit of {u}", Size("limit_V", p.busy * size, over), formulas.saturation, i,
-            term=own.soft_limit(i), start=own.limit_start, drawn={"limit_power": Uniform(8.0, 20.0)}, bounds=(0.6, min(8.0, p.severest)),
+            term=own.soft_limit(i), start=below_largest, drawn={"limit_power": Uniform(8.0, 20.0)}, bounds=(0.6, min(8.0, p.severest)),
         ),
         *((sag,) if u.endswith("_V") else ()),
         known(

@@ -37,11 +37,6 @@ def soft_limit(i: int) -> Term:
     return passed
 
 
-def limit_start(a: float, shape: Shape, target: Array) -> list[float]:
-    """A limit above all that came through would have no slope and stay where it starts."""
-    return [min(a, 0.99 * float(np.abs(target).max()))]
-
-
 def inner_resistance(a: float, shape: Shape, visited: Visited) -> Array:
     """Share of the voltage that a source with an inner resistance lacks."""
     return np.asarray(1.0 - 1.0 / (1.0 + a * visited.load))

@@ -6,7 +6,7 @@ from blind.effects.ce150_formulas import flexible_mode
 from blind.effects.ce150_table import for_both, in_table
 from blind.effects.draws import Fixed, OneOf, Uniform
 from blind.effects.effect import Effect, Shape, Size, over, over_root
-from blind.effects.equivalent import Equivalents
+from blind.effects.equivalent import Equivalents, below_largest
 from blind.effects.visited import Visited
 from blind.rigs.second import formulas
 
@@ -36,7 +36,7 @@ def _input_rows(i: int) -> tuple[Effect, ...]:
             drawn={"limit_knee": Uniform(0.03, 0.15)},
             bounds=LIMIT_BOUNDS[i],
             term=formulas.soft_limit(i),
-            start=formulas.limit_start,
+            start=below_largest,
         ),
         in_table(
             "{rotor}_input.supply_sag",

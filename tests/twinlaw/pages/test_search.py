@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
+from identification.stages.estimate import Data
 from twinlaw.pages.identify.search import evolution_plot
 from twinlaw.pages.margins import LEGEND_POINTS
 from twinlaw.pages.plots import COLOURS
@@ -20,7 +21,7 @@ NAME = re.compile(rf'<text[^>]*x="([\d.]+)"[^>]*>({LONGEST} \d)<')
 def test_nine_experiments_have_nine_colours_and_their_names_stay_within_the_picture() -> None:
     best = 1e5 - 1e4 * np.exp(-np.arange(150) / 20.0)
     stages: Any = [
-        (f"experiment {number}, {LONGEST} {number}", SimpleNamespace(searched=[SimpleNamespace(bits=(8,), best=best)]))
+        (Data("", f"{LONGEST} {number}"), SimpleNamespace(searched=[SimpleNamespace(bits=(8,), best=best)]))
         for number in range(1, 10)
     ]
     drawn = evolution_plot(stages)

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from identification.experiments.table import KINDS
 from identification.proof.linear_rotor import against_linear, readings_by
 from identification.proof.validation import Comparison
 from identification.results.quality import identification_quality
@@ -52,7 +51,7 @@ def identify_page(
     sections += [_rotor(kind, result, estimate) for kind, estimate in linear.items()]
     if "gravity" in by_kind:
         sections.append(_gravity(by_kind["gravity"], result))
-    sections += [fit_section(title, stage) for title, stage in result.stages]
+    sections += [fit_section(data.title, stage) for data, stage in result.stages]
     return Page(
         title=f"{result.plant.name}: identified",
         verdict=(
@@ -97,7 +96,7 @@ def _fits(result: Identification) -> list[Section]:
 def _rotor(kind: str, result: Identification, linear: Estimate) -> Section:
     """Speed and thrust over time: measured, polynomial model, the manual's linear one."""
     name, figure = ROTORS[kind]
-    stage = result.stage_of(KINDS[kind].title)
+    stage = result.stage_of(kind)
     panels = [_rotor_panel(stage, linear, number, label) for number, label in ((0, "speed [rad/s]"), (1, "thrust [N]"))]
     rows = [
         (own.channel, f"{own.fit_percent:.2f} %", f"{own.linear_fit_percent:.2f} %", f"{own.rms_ratio:.1f}")

@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.results.result import Estimated
 from identification.search.methods import Searched
-from identification.stages.estimate import Estimate
+from identification.stages.estimate import Data, Estimate
 from records.text.uncertain import to_sd
 from records.text.units import unit_of
 from sim.bind import BoundPlant
@@ -16,14 +16,14 @@ from twinlaw.pages.page import Section, Table
 from twinlaw.pages.plots import COLOURS, Curve, Panel, stack
 
 HEADING = ("data", "parameter", "unit", "range")
-Stages = Sequence[tuple[str, Estimate]]
+Stages = Sequence[tuple[Data, Estimate]]
 
 
 def search_sections(
     stages: Stages, truth: BoundPlant | None, evolution: str, estimates: Sequence[Estimated]
 ) -> list[Section]:
     """The table of all stages that searched, and Fig. 6, their `evolution_plot`, where there is one; nothing where no stage did."""
-    searched = [(title, stage) for title, stage in stages if stage.searched]
+    searched = [(data, stage) for data, stage in stages if stage.searched]
     if not searched:
         return []
     return [_side_by_side(searched, true_values(truth), estimates), *_evolution(evolution)]
@@ -35,10 +35,10 @@ def _side_by_side(stages: Stages, truth: Mapping[str, float], estimates: Sequenc
     known = ("truth",) if truth else ()
     by_name = {entry.name: entry for entry in estimates}
     coded = ("bits",) if any(stage.searched[0].bits for _, stage in stages) else ()
-    rows = [line for title, stage in stages for line in _rows(title, stage, truth, by_name, bool(coded))]
+    rows = [line for data, stage in stages for line in _rows(data, stage, truth, by_name, bool(coded))]
     costs = [
-        (_short(title), found.method, f"{found.error:.4g} {_unit(stage)}".rstrip(), f"{found.cpu_s:.2f} s")
-        for title, stage in stages
+        (data.short, found.method, f"{found.error:.4g} {_unit(stage)}".rstrip(), f"{found.cpu_s:.2f} s")
+        for data, stage in stages
         for found in stage.searched
     ]
     sentences = (
@@ -53,14 +53,14 @@ def _side_by_side(stages: Stages, truth: Mapping[str, float], estimates: Sequenc
 
 
 def _rows(
-    title: str, stage: Estimate, truth: Mapping[str, float], estimates: Mapping[str, Estimated], coded: bool
+    data: Data, stage: Estimate, truth: Mapping[str, float], estimates: Mapping[str, Estimated], coded: bool
 ) -> list[tuple[str, ...]]:
     first, rows = stage.searched[0], []
     for place, name in enumerate(first.names):
         unit, sd = (estimates[name].unit, estimates[name].by_data_sd) if name in estimates else ("", 0.0)
         bits = f"{first.bits[place]}" if first.bits else ""
         cells = [
-            _short(title),
+            data.short,
             name,
             unit,
             f"{first.lower[place]:.4g} .. {first.upper[place]:.4g}",
@@ -82,11 +82,6 @@ def _unit(stage: Estimate) -> str:
     return "deg" if all(unit_of(channel) == "rad" for channel in channels) else ""
 
 
-def _short(title: str) -> str:
-    """Of "experiment 1, u1: main motor lifts the arm" what is between comma and colon."""
-    return title.partition(", ")[2].partition(":")[0] or title
-
-
 def _evolution(plot: str) -> list[Section]:
     sentence = "Fitness 100000 - sum |e| of the best string so far, by generation."
     return [Section("Evolution (Fig. 6 of seed 001)", (sentence,), (), (plot,))] if plot else []
@@ -94,7 +89,7 @@ def _evolution(plot: str) -> list[Section]:
 
 def evolution_plot(stages: Stages) -> str:
     """Best fitness over generations for each stage with a coded search; "" where there is none."""
-    found = [(title, stage.searched[0]) for title, stage in stages if stage.searched and stage.searched[0].bits]
+    found = [(data, stage.searched[0]) for data, stage in stages if stage.searched and stage.searched[0].bits]
     if not found:
         return ""
     curves = [_curve(*entry) for entry in zip(found, cycle(COLOURS))]
@@ -104,6 +99,6 @@ def evolution_plot(stages: Stages) -> str:
     )  # names of experiments leave two panels side by side no room
 
 
-def _curve(stage: tuple[str, Searched], colour: str) -> Curve:
-    title, entry = stage
-    return Curve(np.arange(1.0, len(entry.best) + 1.0), np.array(entry.best) / 1e4, _short(title), colour)
+def _curve(stage: tuple[Data, Searched], colour: str) -> Curve:
+    data, entry = stage
+    return Curve(np.arange(1.0, len(entry.best) + 1.0), np.array(entry.best) / 1e4, data.short, colour)

@@ -5,7 +5,7 @@ from collections.abc import Container, Mapping, Sequence
 from identification.results.notes import chance, relative
 from identification.results.quality import fit_looks, held_out_look
 from identification.results.result import Estimated
-from identification.stages.estimate import Estimate
+from identification.stages.estimate import Data, Estimate
 from identification.uncertainty.residuals import ResidualTest
 from records.text.uncertain import interval, to_sd
 from twinlaw.pages.identify.truth import HEADING as TRUTH_HEADING
@@ -70,12 +70,12 @@ def aid_rows(aids: Sequence[Estimated]) -> list[tuple[str, ...]]:
     return [row[:2] + row[3:6] for row in estimate_rows(aids)]
 
 
-def fit_rows(stages: Sequence[tuple[str, Estimate]]) -> list[tuple[str, ...]]:
+def fit_rows(stages: Sequence[tuple[Data, Estimate]]) -> list[tuple[str, ...]]:
     """One row for each channel of each stage."""
     return [
         (*row, colour_of(fit_looks(test)))
-        for title, stage in stages
-        for test, row in zip(stage.residuals, _test_rows(title, stage.residuals), strict=True)
+        for data, stage in stages
+        for test, row in zip(stage.residuals, _test_rows(data.title, stage.residuals), strict=True)
     ]
 
 

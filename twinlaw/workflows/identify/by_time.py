@@ -12,10 +12,10 @@ from identification.results.notes import leaning_notes
 from identification.results.result import Identification
 from identification.search.methods import Search
 from identification.stages.best_fit import best_fit
-from identification.stages.estimate import Estimate
+from identification.stages.estimate import Data, Estimate
 from identification.stages.holdout import prediction_tests
 from identification.stages.logs import Asked, fits_of_logs
-from identification.stages.staged import identify_stage, title
+from identification.stages.staged import data_of, identify_stage
 from records.errors import BadInput
 from records.experiment import Experiment
 from records.log import RunLog
@@ -65,11 +65,11 @@ def _from_experiments(bound: BoundPlant, experiments: Sequence[Experiment], wish
     """One stage for each experiment, in the paper's order."""
     done = Done(belief=stated(bound) if wishes.keep_knowledge else NOTHING)
     for experiment in experiments:
-        with console.stage(title(experiment)):
+        with console.stage(str(data_of(experiment))):
             stage = identify_stage(
                 bound, experiment, done.belief, wishes.limits, wishes.search, wishes.only, so_far.told
             )
-        done = done.with_stage(title(experiment), stage.result, stage.belief, stage.aids)
+        done = done.with_stage(data_of(experiment), stage.result, stage.belief, stage.aids)
         so_far.finished(done)
     return done
 
@@ -89,7 +89,7 @@ def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, do
     with console.stage(f"{len(logs)} run logs, {so_many}"):
         for fit in fits_of_logs(bound, logs, names, asked):
             fits.append(fit)
-            found = _with_logs(done, ", ".join(logs), best_fit(fits))
+            found = _with_logs(done, tuple(logs), best_fit(fits))
             so_far.finished(found)
     return found
 
@@ -108,12 +108,13 @@ def _untold(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, done:
 
 def _held(bound: BoundPlant, done: Done) -> tuple[str, ...]:
     """What the intervals of the last fit take as exact though the plant file does not know it so well."""
-    title, fit = done.stages[-1]
-    return leaning_notes(title, leaning(bound, fit))
+    data, fit = done.stages[-1]
+    return leaning_notes(data.title, leaning(bound, fit))
 
 
-def _with_logs(done: Done, data: str, fit: Estimate) -> Done:
+def _with_logs(done: Done, logs: tuple[str, ...], fit: Estimate) -> Done:
     """The offsets of the inputs are no parameters of the plant."""
     trims = tuple(name for name in fit.belief.names if name.startswith("offset."))
     kept = tuple(name for name in fit.belief.names if name not in trims)
+    data = Data(", ".join(logs), ", ".join(logs), logs=logs)
     return done.with_stage(data, fit, fit.belief.part(kept), fit.belief.part(trims))

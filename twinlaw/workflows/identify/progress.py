@@ -9,7 +9,7 @@ from pathlib import Path
 from identification.fit.belief import NOTHING, Belief
 from identification.results.facts import facts
 from identification.results.result import Identification, identification, interrupted, signs_of
-from identification.stages.estimate import Estimate
+from identification.stages.estimate import Data, Estimate
 from records.files import write_atomic
 from records.plant import Plant, save_plant
 from sim.bind import bind
@@ -22,11 +22,11 @@ Save = Callable[[Identification], None]
 class Done:
     """Fits by their data, what they needed besides with its degrees of freedom, and the last belief over the plant's parameters."""
 
-    stages: tuple[tuple[str, Estimate], ...] = ()
+    stages: tuple[tuple[Data, Estimate], ...] = ()
     aids: tuple[tuple[Belief, float], ...] = ()
     belief: Belief = NOTHING
 
-    def with_stage(self, data: str, found: Estimate, belief: Belief, aids: Belief) -> "Done":
+    def with_stage(self, data: Data, found: Estimate, belief: Belief, aids: Belief) -> "Done":
         """What is known once this fit is there too; `belief` and `aids` are the two parts of what it tells."""
         besides = ((aids, found.dof),) if aids.names else ()
         return Done((*self.stages, (data, found)), (*self.aids, *besides), belief)

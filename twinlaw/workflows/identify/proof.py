@@ -40,7 +40,7 @@ def linear_rotors(experiments: Sequence[Experiment], bound: BoundPlant) -> dict[
 def proof_facts(result: Identification, linear: Mapping[str, Estimate], proof: ProofReport) -> dict[str, Any]:
     """What the report shows beside the estimates, for a program."""
     rotors = {
-        kind: {own.channel: asdict(own) for own in against_linear(result.stage_of(KINDS[kind].title), estimate)}
+        kind: {own.channel: asdict(own) for own in against_linear(result.stage_of(kind), estimate)}
         for kind, estimate in linear.items()
     }
     return {"against_linear": rotors, "flight_rms": dict(proof.flight_rms)}
