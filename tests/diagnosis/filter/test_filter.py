@@ -127,8 +127,8 @@ def test_a_late_sensor_is_as_likely_with_rows_as_with_instants_between_them(
     t_s, u = flight.filter_input.t_s, flight.filter_input.u
     between = np.sort(np.concatenate([t_s[:-1] + k / 10 * np.diff(t_s) for k in range(10)] + [t_s[-1:]]))
     cut = spread(flight.filter_input, between, np.repeat(u, 10, axis=0)[:-9])
-    supposed = settled.with_effects({"psi_sensor.lag": {"tau": tau_s}})
-    values = [likelihood_of(c, supposed) for c in (case, case.with_flights([replace(flight, filter_input=cut)]))]
+    lagging = settled.with_effects({"psi_sensor.lag": {"tau": tau_s}})
+    values = [likelihood_of(c, lagging) for c in (case, case.with_flights([replace(flight, filter_input=cut)]))]
     assert values[0] == pytest.approx(values[1], abs=1.0)
 
 

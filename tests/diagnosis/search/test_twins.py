@@ -30,13 +30,13 @@ LAG = {"input.lag": {"tau": 0.1, "b": 0.0}}
 GUST = {"arm.gust": {"sigma": 6e-5, "T": 0.5}}
 
 
-def supposed(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
+def fitted_with(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
     """A hypothesis fitted to its end under white noise, from the arm as stated; the same for all who ask for it."""
-    return _supposed(case, json.dumps(effects))
+    return _fitted_with(case, json.dumps(effects))
 
 
 @cache
-def _supposed(case: Case, effects: str) -> FittedHypothesis:
+def _fitted_with(case: Case, effects: str) -> FittedHypothesis:
     begun = fit(case, nominal_hypothesis(case, FIRST_NOISE).with_effects(json.loads(effects)))
     assert begun is not None
     end = refined(case, as_fitted(case, begun))
@@ -107,7 +107,7 @@ def test_a_smooth_torque_is_noise_and_no_lag_of_the_sensor(late: Case) -> None:
     # White noise prefers the sensor's lag, which smooths it, to the drive's, which is there. With the torque as noise this speaks against
     # the drive by less than what tells two names apart, the cost of its second pole with it: before and behind a nearly linear plant a lag
     # is one.
-    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    sensor, drive = fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}}), fitted_with(late, LAG)
     assert sensor.evidence - drive.evidence > 10.0
     sensor, drive = beside_noise(late, [sensor, drive])
     assert drive.effects == ("input.lag",)
@@ -116,7 +116,7 @@ def test_a_smooth_torque_is_noise_and_no_lag_of_the_sensor(late: Case) -> None:
 
 
 def test_what_is_fitted_later_gets_the_noise_of_what_it_is_compared_with(late: Case) -> None:
-    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    sensor, drive = fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}}), fitted_with(late, LAG)
     assert with_noise_of(late, [sensor], drive) == [sensor]
     noisy = beside_noise(late, [drive])[0]
     (found,) = with_noise_of(late, [sensor], noisy)
@@ -129,8 +129,8 @@ def test_where_noise_is_more_than_noise_beside_the_likeliest_the_next_of_its_siz
     # Truth: a lag of the sensor is the likelier name, and under noise of its own predicts a second less well than a delay under its own.
     # Where that is called too little, the delay leads those of one effect.
     logs = FittedLogs(late)
-    lag = supposed(late, {"theta_sensor.lag": {"tau": 0.1}})
-    delay = supposed(late, {"theta_sensor.delay": {"tau": 0.1, "jitter": 0.0}})
+    lag = fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}})
+    delay = fitted_with(late, {"theta_sensor.delay": {"tau": 0.1, "jitter": 0.0}})
     assert lag.evidence > delay.evidence
     gains = [logs.gain(beside_noise(late, [e])[0].fit.hypothesis, e.fit.hypothesis) for e in (lag, delay)]
     assert gains[0] < gains[1]
@@ -139,7 +139,7 @@ def test_where_noise_is_more_than_noise_beside_the_likeliest_the_next_of_its_siz
 
 
 def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> None:
-    (sensor,) = beside_noise(late, [supposed(late, {"theta_sensor.lag": {"tau": 0.1}})])
+    (sensor,) = beside_noise(late, [fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}})])
     found = {frozenset(sensor.effects): sensor}
     fresh = fit_twins(late, found, sensor)
     assert frozenset(("input.lag",)) in found
@@ -150,8 +150,8 @@ def test_what_was_not_tried_is_fitted_in_the_place_of_its_twin(late: Case) -> No
 def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew() -> None:
     # Truth: 0.4 mN m of dry friction, the same at all speeds: Stribeck's that falls far beyond all motion is hardly another.
     case = rubbing()
-    rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
-    slope = supposed(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
+    rub = fitted_with(case, {"arm.coulomb": {"b": 4e-4}})
+    slope = fitted_with(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
     assert slope.evidence < rub.evidence - 100.0  # a bell narrower than a count a row
     found = {frozenset(entry.effects): entry for entry in (rub, slope)}
     fit_twins(case, found, rub)
@@ -163,8 +163,8 @@ def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew()
 def test_a_twin_that_was_found_better_is_kept() -> None:
     # The same twin, known to lack 31 nats: too much to be near, and less than a fit in the place of the friction ends short of it.
     case = rubbing()
-    rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
-    known = supposed(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
+    rub = fitted_with(case, {"arm.coulomb": {"b": 4e-4}})
+    known = fitted_with(case, {"arm.stribeck": {"b_s": 9e-4, "v_s": 0.005, "e": 0.0}})
     known = replace(known, evidence=rub.evidence - decisions.PLAIN_TO_SEE - 1.0)
     found = {frozenset(entry.effects): entry for entry in (rub, known)}
     (again,) = [entry for entry in fit_twins(case, found, rub) if entry.effects == known.effects]
@@ -174,8 +174,8 @@ def test_a_twin_that_was_found_better_is_kept() -> None:
 
 def test_what_is_fitted_anew_is_told_once(late: Case) -> None:
     # The sensor's lag, of which the search knows a bad fit, is fitted in the place of the drive's: the better stands for both.
-    drive = supposed(late, LAG)
-    bad = replace(supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), evidence=drive.evidence - 1e3)
+    drive = fitted_with(late, LAG)
+    bad = replace(fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}}), evidence=drive.evidence - 1e3)
     told = Search((drive, bad), named(), True, None, ())  # type: ignore[arg-type]
     wider = with_twins(late, told, drive)
     assert sorted({entry.effects for entry in wider.fitted}) == sorted(entry.effects for entry in wider.fitted)
@@ -202,15 +202,15 @@ def test_twins_that_the_logs_tell_apart_both_grow(late: Case) -> None:
 
 def test_noise_is_not_sought_beside_what_it_cannot_bring_near_the_best(late: Case) -> None:
     # Truth: a lag of the drive, under a smooth torque that is some hundred nats of noise with a memory: not a hundred thousand.
-    drive = supposed(late, LAG)
-    hopeless = replace(supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), evidence=drive.evidence - 1e5)
+    drive = fitted_with(late, LAG)
+    hopeless = replace(fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}}), evidence=drive.evidence - 1e5)
     assert [entry.effects for entry in beside_noise(late, [drive, hopeless])] == [drive.effects]
 
 
 def test_noise_is_sought_beside_what_it_could_bring_near_as_parameters_come_back(late: Case) -> None:
     # Truth: a fit says what friction gains under the noise of a sensor's lag, of which it is no twin. Short by half of that beyond what is
     # near it is asked, by one and a half of it not.
-    sensor, rub = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, {"arm.coulomb": {"b": 4e-4}})
+    sensor, rub = fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}}), fitted_with(late, {"arm.coulomb": {"b": 4e-4}})
     (noisy,) = beside_noise(late, [sensor])
     (fitted,) = with_noise_of(late, [rub], noisy)
     gain = fitted.evidence - rub.evidence
@@ -225,7 +225,7 @@ def test_noise_is_sought_beside_what_it_could_bring_near_as_parameters_come_back
 def test_where_the_likeliest_takes_none_noise_is_sought_beside_no_other() -> None:
     # Truth: a lag of the drive and no noise with a memory. Beside what lacks the lag noise could take its part, as innovations foretell.
     case = lagging()
-    drive, pull = supposed(case, LAG), supposed(case, {"arm.offset_force": {"offset": 1e-5}})
+    drive, pull = fitted_with(case, LAG), fitted_with(case, {"arm.offset_force": {"offset": 1e-5}})
     runs = [passes(case, entry.fit.hypothesis) for entry in (pull, drive)]
     promised = float(np.subtract(*(foretold_nats(run) for run in runs if run is not None)))
     assert decisions.PARAMETERS_BACK * promised > 1.5 * decisions.PLAIN_TO_SEE
@@ -236,7 +236,7 @@ def test_where_the_likeliest_takes_none_noise_is_sought_beside_no_other() -> Non
 def test_between_twins_noise_decides_where_one_lacks_no_more_than_it_gained(late: Case) -> None:
     # Truth: noise gains some hundred nats beside the drive's lag; the sensor's, its twin, is asked where it lacks nine tenths of that,
     # which no bound brings near, and not where it lacks more than all of it.
-    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    sensor, drive = fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}}), fitted_with(late, LAG)
     (noisy,) = beside_noise(late, [drive])
     gained = noisy.evidence - drive.evidence
     with decisions.changed("PARAMETERS_BACK", 0.0):  # whatever its own innovations foretell
@@ -249,7 +249,7 @@ def test_between_twins_noise_decides_where_one_lacks_no_more_than_it_gained(late
 def test_own_noise_is_not_sought_beside_what_stays_out_of_reach_under_noise_that_is_known(late: Case) -> None:
     # Truth: the noise of the drive's lag, with numbers that are the sensor's, is what a search that begins with it finds; far from what
     # could lead no other is sought, in reach another may be likelier and is never less.
-    sensor, drive = supposed(late, {"theta_sensor.lag": {"tau": 0.1}}), supposed(late, LAG)
+    sensor, drive = fitted_with(late, {"theta_sensor.lag": {"tau": 0.1}}), fitted_with(late, LAG)
     (noisy,) = beside_noise(late, [drive])
     with decisions.changed("TAKEN_IN", 1e-9):  # whatever little its innovations promise
         (shared,) = with_noise_of(late, [sensor], noisy)
@@ -271,13 +271,13 @@ def test_a_corner_that_was_fitted_sharp_is_begun_round_again() -> None:
     # Truth: a dead band of 0.7 V, rounded over 0.42 V; where a fit has it sharp, its roundness has no slope.
     band = {"input.deadzone": {"d": 0.7, "w": 0.6}}
     case = arm_case(arm_log(band, seed=42, seconds=LONG_S))
-    end = supposed(case, {"input.deadzone": {"d": 0.6, "w": 0.0}})
+    end = fitted_with(case, {"input.deadzone": {"d": 0.6, "w": 0.0}})
     assert end.fit.hypothesis.effects["input.deadzone"]["w"] == pytest.approx(0.6, rel=0.25)
     assert end.fit.hypothesis.effects["input.deadzone"]["d"] == pytest.approx(0.7, rel=0.05)
 
 
 def test_noise_beside_a_name_is_left_alone_where_the_logs_tell_of_none() -> None:
     case = lagging()
-    plain = supposed(case, LAG)
+    plain = fitted_with(case, LAG)
     assert beside_noise(case, [plain]) == []
     assert coloured_noise_of(case, plain.fit.hypothesis).effects.keys() == plain.fit.hypothesis.effects.keys()
