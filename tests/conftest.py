@@ -1,4 +1,4 @@
-"""What all tests share: one thread for the linear algebra, as for `twinlaw` itself, no soaks unasked, and one run of the whole chain."""
+"""What all tests share: one thread for linear algebra, as for `twinlaw` itself, no soaks unasked, one run of the chain, a short search."""
 
 import fcntl
 import gc
@@ -31,6 +31,14 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
         if not printed.exists():
             printed.write_text(readme.told(folder), encoding="utf-8")
     return folder, printed.read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def one_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search for another firmware tries one change at a time: its thousands of pairs are nearly all of its time. They are tried in a
+    soak, and by those tests of the replay that do not ask for this."""
+    if not SOAK:
+        monkeypatch.setattr("replay.search._pairs", lambda single: ())
 
 
 @pytest.hookimpl(wrapper=True)

@@ -156,6 +156,7 @@ def test_integrators_that_are_held_at_the_limits_are_named(change: str, cause: s
     assert _told(flown(law, TIGHT), TIGHT).cause == cause
 
 
+@pytest.mark.usefixtures("one_change")
 def test_a_difference_that_begins_at_a_limit_is_said_to() -> None:
     law = edited_law("w_0_V = u_V - limited_V", "w_0_V = 0.37f * (u_V - limited_V)", TIGHT)
     found = _told(flown(law, TIGHT), TIGHT)
@@ -172,6 +173,7 @@ def test_a_difference_that_begins_at_no_limit_is_not_laid_on_one() -> None:
 LACKING = [(numbers, rows) for numbers in (False, True) for rows in ("every other", "the middle")]
 
 
+@pytest.mark.usefixtures("one_change")
 @pytest.mark.parametrize(("has_numbers", "lacks"), sampled(LACKING, keep=LACKING[2:3]))
 def test_a_log_that_lacks_half_its_rows_says_so(has_numbers: bool, lacks: str) -> None:
     log = own()

@@ -298,6 +298,7 @@ def test_a_log_without_references_is_not_replayed() -> None:
 BEGUN = [(flew, begin_s) for flew in (TABLE, ce150_table(degree=2)) for begin_s in (20.0, 52.0, 90.0)]
 
 
+@pytest.mark.usefixtures("one_change")
 @pytest.mark.parametrize(("flew", "begin_s"), sampled(BEGUN, keep=[BEGUN[2]]))
 def test_a_log_that_begins_in_flight_is_told_from_another_firmware(flew: ControllerTable, begin_s: float) -> None:
     # References that move now and then do not matter: the filters forget how they began as well as if all rested.
@@ -310,6 +311,7 @@ def test_a_log_that_begins_in_flight_is_told_from_another_firmware(flew: Control
     assert (found.bit_exact, found.cause) == (False, "begins_in_flight" if flew is TABLE else "not_found")
 
 
+@pytest.mark.usefixtures("one_change")
 def test_a_log_too_short_to_tell_the_laws_state_says_that_its_beginning_may_be_missing() -> None:
     found = replay_firmware(default_flight(100.0), TABLE)
     assert found.cause == "not_found"

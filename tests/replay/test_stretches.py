@@ -149,6 +149,7 @@ def test_the_steps_of_a_sensor_are_no_rounding_of_the_log(decimals: int | None) 
         assert found.bit_exact == (cause is None)
 
 
+@pytest.mark.usefixtures("one_change")
 def test_zeros_written_for_readings_that_were_not_there_are_none_also_beside_zero() -> None:
     """Far from zero the check of the log leaves them out; a step or two beside it nobody sees them but the law."""
     log = own()
@@ -164,6 +165,7 @@ def test_zeros_written_for_readings_that_were_not_there_are_none_also_beside_zer
     assert replay_stretches(replace(log, y=y), TABLE).cause != "sample_not_logged"
 
 
+@pytest.mark.usefixtures("one_change")
 def test_a_sensor_that_stands_in_the_log_alone_is_told_with_its_times_and_nobody_is_accused() -> None:
     log = rows_of(default_flight(), np.arange(4500))
     rows = slice(2500, 2700)
@@ -187,6 +189,7 @@ def test_a_firmware_that_went_wrong_in_a_hold_is_not_cleared_by_it() -> None:
     assert found.record().differs
 
 
+@pytest.mark.usefixtures("one_change")
 @pytest.mark.parametrize("lost", ["angles", "reference", "an angle, and the other stands"])
 def test_readings_that_are_missing_to_the_end_are_the_logs_doing(lost: str) -> None:
     """Truth: the table's own law flew to the end; from 12 s on the log lacks what it took."""
@@ -207,6 +210,7 @@ def test_readings_that_are_missing_to_the_end_are_the_logs_doing(lost: str) -> N
     assert found.sentence == "readings are missing behind 11.99 s; up to there the firmware is cleared"
 
 
+@pytest.mark.usefixtures("one_change")
 def test_a_firmware_at_fault_before_readings_are_missing_to_the_end_is_found() -> None:
     log = own()
     u, y = log.u.copy(), log.y.copy()
@@ -215,6 +219,7 @@ def test_a_firmware_at_fault_before_readings_are_missing_to_the_end_is_found() -
     assert replay_stretches(replace(log, u=u, y=y), TABLE).record().differs
 
 
+@pytest.mark.usefixtures("one_change")
 def test_a_log_cut_where_the_law_rested_begins_in_flight() -> None:
     """Truth: the table's own law, which held both references for seconds before and behind the cut, so that from rest it is little off."""
     log = default_flight(5.0)
@@ -243,6 +248,7 @@ def test_a_log_that_repeats_single_readings_of_a_slow_axis_clears_the_firmware(s
     assert f"the log holds another reading than the firmware had {said}" in (found.sentence or "")
 
 
+@pytest.mark.usefixtures("one_change")
 @pytest.mark.parametrize("columns", [[2, 3], [2]])
 def test_a_firmware_that_used_an_older_reading_is_not_cleared_by_the_log(columns: list[int]) -> None:
     """Truth: in 2 % of the samples the law had angles of the sample before, and the log the right ones."""
@@ -269,6 +275,7 @@ def test_readings_that_repeat_beside_others_that_the_log_lacks_clear_the_firmwar
     assert "the firmware is cleared" in (found.sentence or "")
 
 
+@pytest.mark.usefixtures("one_change")
 @pytest.mark.parametrize("share", [0.005, 0.05])
 def test_so_it_does_where_the_law_computes_in_fixed_point(share: float) -> None:
     """Truth: the same in integers; behind a reading that is another all words differ."""
@@ -283,6 +290,7 @@ def test_so_it_does_where_the_law_computes_in_fixed_point(share: float) -> None:
     assert "in fixed point" in (found.sentence or "")
 
 
+@pytest.mark.usefixtures("one_change")
 def test_a_law_in_fixed_point_that_lost_samples_is_not_cleared_by_readings() -> None:
     """Truth: in 1 % of the samples the law was not run and its output stayed."""
     lost = np.random.default_rng(9).random(2001) < 0.01

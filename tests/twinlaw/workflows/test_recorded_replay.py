@@ -13,6 +13,8 @@ from tests.replay.firmware_flights import default_flight, own, plant, rows_of
 from tests.soak import sampled
 from twinlaw.workflows.chain.verifying import recorded_replay
 
+pytestmark = pytest.mark.usefixtures("one_change")
+
 
 def test_a_log_is_compared_and_what_explains_its_difference_is_said(tmp_path: Path) -> None:
     save_log(tmp_path / "own.csv", own())
