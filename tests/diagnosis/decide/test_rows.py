@@ -70,6 +70,7 @@ def test_columns_in_other_rows_are_refused_by_name(
         told(stateless, logged(log, slip))
 
 
+@pytest.mark.soak
 def test_commands_that_a_motor_s_log_has_a_row_late_are_named_and_made_no_physics(tmp_path: Path) -> None:
     """Its current follows within a row of 10 ms: another inductance, or inputs that move between rows, make up for a part of it."""
     for name, text in plant_texts("late_motor", "motor").items():

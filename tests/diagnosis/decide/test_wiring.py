@@ -164,6 +164,7 @@ def test_a_turned_sign_that_is_likelier_but_not_surely_is_told() -> None:
     assert "tau_Nm has the wrong sign" in said
 
 
+@pytest.mark.soak
 def test_a_start_that_only_logs_together_show_is_no_turned_sign() -> None:
     """Truth: a motor that comes late to its one impulse, in 3 s before a gap of its log. Beside calmer logs, whose noise they share, the
     angle read backwards seemed 80 nats likelier."""

@@ -34,6 +34,7 @@ def test_steps_of_an_input_are_found_near_their_size() -> None:
     assert min(abs(step / STEP_V - 1.0) for step, _ in found) < 0.01
 
 
+@pytest.mark.soak
 def test_steps_of_an_input_that_no_rotor_stands_behind_are_found() -> None:
     # Truth: a motor, whose voltage moves a current and that the shaft, gets it rounded to 0.1 V; the current settles within 1 ms of a row.
     motor = bind(load_plant(ROOT / "plants" / "dc_motor" / "plant.toml"))
@@ -47,6 +48,7 @@ def test_steps_of_an_input_that_no_rotor_stands_behind_are_found() -> None:
     assert min(abs(step / 0.1 - 1.0) for step, _ in found) < 0.01
 
 
+@pytest.mark.soak
 def test_steps_of_a_command_that_takes_a_hundredth_of_its_range_are_found() -> None:
     # Truth: a drone whose torque command may go to 1 and goes to 0.01 gets it rounded to 0.003: a step smaller than any of the whole range.
     drone = bind(load_plant(ROOT / "plants" / "antx_2dof_drone.toml"))

@@ -54,6 +54,7 @@ def test_an_encoder_alone_has_none() -> None:
     assert nominal_fit(arm_case(arm_log(seed=74))).hypothesis.reading_noise == {}
 
 
+@pytest.mark.soak
 def test_a_torque_that_comes_and_goes_is_found_beside_them() -> None:
     # Truth: both; asked once more beside what was taken, nothing more is.
     case = arm_case(misread(arm_log({"arm.gust": {"sigma": 3e-4, "T": 0.5}}, seed=74, seconds=LONG_S), 75))

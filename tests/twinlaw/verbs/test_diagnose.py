@@ -98,6 +98,7 @@ def test_noise_instead_of_angles_is_refused(tmp_path: Path, capsys: pytest.Captu
     assert "from row to row" in refused(tmp_path, capsys, replace(log, y=np.clip(y, -0.7, 0.7), extra={}))
 
 
+@pytest.mark.soak
 def test_an_angle_with_the_wrong_sign_is_refused_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = arm_log(seconds=10.0)
     line = refused(tmp_path, capsys, replace(log, y=-log.y), plant=ARM)

@@ -13,6 +13,7 @@ from records.table import ControllerTable, Schedule, load_table
 from sim.added_effects import library
 from sim.bind import BoundPlant, bind
 from sim.simulate import simulate
+from tests.soak import sampled
 from tests.test_project import ROOT
 from twinlaw import design, load
 from twinlaw.command import main
@@ -154,7 +155,7 @@ def test_it_begins_as_an_arm_unless_told_otherwise(tmp_path: Path) -> None:
         assert (tmp_path / "untold" / file).read_bytes() == (tmp_path / "told" / file).read_bytes()
 
 
-@pytest.mark.parametrize("like", BEGINNINGS)
+@pytest.mark.parametrize("like", sampled(BEGINNINGS, keep=["arm", "tank"]))
 def test_a_controller_is_designed_and_generated_for_it_at_once(like: str, tmp_path: Path) -> None:
     table = designed(begun(like, tmp_path))
     assert [(loop.axis, loop.output, loop.input) for loop in table.loops] == [LOOPS[like]]
