@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Generator
 from pathlib import Path
+from typing import TextIO
 
 import pytest
 
@@ -39,6 +40,21 @@ def one_change(monkeypatch: pytest.MonkeyPatch) -> None:
     soak, and by those tests of the replay that do not ask for this."""
     if not SOAK:
         monkeypatch.setattr("replay.search._pairs", lambda single: ())
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A test that asks for no picture gets blank ones, but in a soak: to write them takes most of the time of a report."""
+
+    class Blank:
+        def __init__(self, figure: object) -> None:
+            self.figure = figure
+
+        def print_svg(self, stream: TextIO, metadata: object) -> None:
+            stream.write("<svg></svg>")
+
+    if not SOAK:
+        monkeypatch.setattr("twinlaw.pages.plots.FigureCanvasSVG", Blank)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -40,6 +40,7 @@ def test_what_a_longer_command_printed_is_what_its_row_says(verb: str) -> None:
     assert set(result(KEPT[verb])) <= keys(verb)
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     "command",
     [

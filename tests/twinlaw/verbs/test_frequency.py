@@ -75,7 +75,7 @@ def test_flights_become_a_plant_file_a_report_and_json(flown, monkeypatch, tmp_p
 
 
 @pytest.fixture
-def faulty(flown, monkeypatch, tmp_path):
+def faulty(flown, monkeypatch, tmp_path, undrawn):
     """Both sweeps with a change to each log, identified from the file's own start."""
     monkeypatch.setattr(fit, "RESTARTS", 0)
 

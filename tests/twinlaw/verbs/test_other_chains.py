@@ -67,6 +67,7 @@ def test_the_law_of_axes_with_two_rotor_lags_is_one_in_twin_host_and_target(arit
     assert [(row["steps"] >= STEPS, row["mismatches"]) for row in found["equality"]] == [(True, 0)] * 4
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_output_that_no_loop_closes_has_no_reference_and_is_not_judged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -119,6 +120,7 @@ def test_what_is_the_helicopter_s_alone_says_so(tmp_path: Path, capsys: pytest.C
     assert said.count("\n") == 1
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_any_loop_is_swept_and_its_page_names_no_paper(tmp_path: Path) -> None:
     # Truth: the first loop alone is there, and moves by the amplitude about the middle of its references. No paper has this plant.
     plant = str(plant_file("inverted_arm", tmp_path))

@@ -44,6 +44,7 @@ def _built(folder: Path) -> tuple[list[str], list[str]]:
     return out, table
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_verbs_of_the_scheduled_law_alone_say_so_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

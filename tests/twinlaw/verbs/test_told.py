@@ -22,6 +22,7 @@ def designed_once():
         yield
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_design_tells_poles_as_designed_fitted_and_rounded_and_of_both_loops_coupled(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
