@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from records.board import STM32G071
 from records.loops import ADC_CODES
 from rig.emulator.answers import (
     BoardConfig,
@@ -27,6 +28,7 @@ from rig.emulator.native import library
 from rig.emulator.stops import Stop, StopKind
 
 PS_PER_S = 10**12
+A_SECOND = STM32G071.clock_hz  # cycles, after which a call counts as one that does not return
 NEVER = 2**64 - 1
 TIMER_INDEX = {1: 0, 2: 1, 3: 2, 6: 3, 7: 4}
 RESET_CODES = {"pin": 1 << 26, "power": 1 << 27, "software": 1 << 28, "watchdog": 1 << 29}
@@ -269,7 +271,7 @@ class EmulatedBoard:
         """First free RAM behind the image's data, aligned to 8 bytes: room for arguments of `call`."""
         return (self.image.ram_end + 7) & ~7
 
-    def call(self, name: str, *arguments: int, max_cycles: int = 64_000_000) -> CallResult:
+    def call(self, name: str, *arguments: int, max_cycles: int = A_SECOND) -> CallResult:
         """Run one function of up to 8 words, interrupts off, peripherals halted; raises StoppedError if it does not return."""
         kind, result = self._calls.call(self.symbol(name)[0], arguments, max_cycles)
         self._demand_return(kind)
@@ -282,7 +284,7 @@ class EmulatedBoard:
         inputs: Sequence[tuple[int, NDArray[Any]]],
         outputs: Sequence[tuple[int, int]],
         steps: int,
-        max_cycles: int = 64_000_000,
+        max_cycles: int = A_SECOND,
     ) -> CallsResult:
         """The same `steps` times: before each, row k of every input goes to its address; after it, outputs are fetched."""
         address = self.symbol(name)[0]

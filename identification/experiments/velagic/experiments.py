@@ -140,8 +140,10 @@ def run(experiment: Experiment, bound: BoundPlant, part_of: Callable[[], Model])
     return replace(whole, x0=x0, free=(), start_sd=np.zeros((1, 0)))
 
 
-def _kind(number: int, symbol: str, title: str, locked: tuple[str, ...], perform: models.Performed, part_of: Callable[[], Model],
-          code: dict[str, tuple[float, float, int]]) -> Kind:  # fmt: skip
+def _kind(number: int, named: tuple[str, str], locked: tuple[str, ...], perform: models.Performed,
+          part_of: Callable[[], Model], code: dict[str, tuple[float, float, int]]) -> Kind:  # fmt: skip
+    """An experiment with the rig upright; `named` are the paper's symbol of it and a title."""
+    symbol, title = named
     return Kind(number, title, "upright", locked, tuple(code), perform, partial(run, part_of=part_of), {}, code, symbol)
 
 
@@ -156,8 +158,7 @@ def _coded(lower: float, bits: int) -> tuple[float, float, int]:
 KINDS = {
     "main_motor": _kind(
         1,
-        "u1",
-        "main motor lifts the arm",
+        ("u1", "main motor lifts the arm"),
         ("azimuth",),
         main_motor,
         models.arm,
@@ -171,8 +172,7 @@ KINDS = {
     ),
     "tail_motor": _kind(
         2,
-        "u2",
-        "tail motor turns the azimuth",
+        ("u2", "tail motor turns the azimuth"),
         (),
         tail_motor,
         models.turn_by_tail,
@@ -180,14 +180,13 @@ KINDS = {
     ),
     "cross_coupling": _kind(
         3,
-        "u3",
-        "main motor turns the azimuth",
+        ("u3", "main motor turns the azimuth"),
         (),
         cross_coupling,
         models.turn_by_both,
         {"a_3": _coded(0.0, 18), "b_3": _coded(0.0, 16)},
     ),
     "gyroscopic": _kind(
-        4, "kG", "a turning azimuth tips the arm", (), gyroscopic, models.whole, {"k_G": _coded(0.0, 19)}
+        4, ("kG", "a turning azimuth tips the arm"), (), gyroscopic, models.whole, {"k_G": _coded(0.0, 19)}
     ),
 }
