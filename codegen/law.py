@@ -303,10 +303,11 @@ def _value(array: str, polynomial: Polynomial, x: str) -> str:
 
 
 def _horner(degree: int) -> str:
-    """The text ((c[n] * x + c[n-1]) * x ...) + c[0]."""
+    """The text ROUNDED((ROUNDED(c[n] * x) + c[n-1]) * x) .. + c[0]."""
     text = f"c[{degree}]"
     for index in range(degree - 1, -1, -1):
-        text = f"({text} * x + c[{index}])" if index else f"{text} * x + c[0]"
+        text = f"ROUNDED({text} * x) + c[{index}]"
+        text = f"({text})" if index else text
     return text
 
 

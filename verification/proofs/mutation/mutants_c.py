@@ -71,7 +71,8 @@ def preprocessed(texts: dict[str, str], name: str) -> str:
         for file, text in {**_HEADERS, **texts}.items():
             (Path(work) / file).write_text(text, encoding="utf-8")
         out = Path(work) / "preprocessed.i"
-        run_zig(["cc", "-E", "-P", "-nostdinc", f"-I{work}", str(Path(work) / name), "-o", str(out)], name)
+        plain = ["-U__clang__", "-nostdinc"]  # what is for that compiler alone is assembly, and no C
+        run_zig(["cc", "-E", "-P", *plain, f"-I{work}", str(Path(work) / name), "-o", str(out)], name)
         return re.sub(r"^#.*$", "", out.read_text(encoding="utf-8"), flags=re.MULTILINE)
 
 
