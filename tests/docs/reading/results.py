@@ -101,6 +101,7 @@ HOURS: dict[str, str] = {
     "blind_fresh_real": "twinlaw blind score real answers-real --json",
     "blind_fresh_second": "twinlaw blind score second answers-second --json",
     "blind_fresh_together": "twinlaw blind score of all fresh sets and their answers --json --reliability; without the judgements",
+    "bench": "twinlaw bench --json, with the peers installed",
     "cycles": "python -m tests.verification.cycles docs/results/cycles.json",
     "dearest": "python -m tests.verification.dearest docs/results/dearest.json",
     "million_frames": "python -m tests.rig.link.campaign 1000000 docs/results/million_frames.json",
