@@ -142,6 +142,7 @@ def test_the_log_of_the_flight_replays_bit_by_bit(
     assert replayed["steps"] > 0.95 * len(log.t_s)
 
 
+@pytest.mark.usefixtures("one_change")
 def test_a_log_with_one_changed_input_fails_the_verification(
     out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
