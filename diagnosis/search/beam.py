@@ -125,7 +125,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown, worth = _grown(case, best, names, worth)
-        if not _end(case, _begun(case, grown, found), found, best[0]):
+        if not best or not _end(case, _begun(case, grown, found), found, best[0]):
             break
         exchange(case, found, worth)
         shrink(case, found)

@@ -16,7 +16,7 @@ from diagnosis.fit.gauss_newton import Fit, Free, fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.beam import Search, certainties
+from diagnosis.search.beam import Alone, Search, certainties, search
 from diagnosis.search.exchange import exchange, fit_twins, shrink
 from diagnosis.search.fitting import Job, once_more, refined, rough
 from sim.added_effects import library
@@ -50,6 +50,15 @@ def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, 
         end = refined(case, end)
     assert end is not None
     assert end.fit.hypothesis.effects["main_input.quantization"]["q"] == pytest.approx(STEP_V, rel=FINELY)
+
+
+def test_where_no_effect_could_be_fitted_the_plant_as_it_is_stays(plant: BoundPlant, fly: Fly) -> None:
+    """A coil beside a log of its own: nothing shows of which a fit begins."""
+    case = make_case(effect_library(plant), [fly(41, {}, 5.0, air=False)])
+    nominal = nominal_fit(case)
+    first = FittedHypothesis((), nominal, log_evidence(nominal, case.library.effects))
+    found = search(case, (), Alone({}, first, frozenset(), linearised(case, nominal), ()))
+    assert (found.fitted, found.sure) == ((first,), False)
 
 
 SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
