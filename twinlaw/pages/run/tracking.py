@@ -57,10 +57,10 @@ def left_sentence(tracking: Sequence[Tracking]) -> str:
     """That a flight did not stay with its references, where it did not, or that they lie beyond what an input can do; else empty."""
     gone, beyond = left(tracking), out_of_reach(entry for entry in tracking if _is_red(entry))
     told = f"the flight left its references, {' and '.join(gone)}" if gone else ""
-    holds_not = "this controller does not hold this plant"
+    follows_not = "this controller does not follow them on this plant"
     if beyond:
-        return "\n".join((*beyond, *([f"{told}; where smaller ones do not help, {holds_not}"] if told else [])))
-    return f"{told}: {holds_not}" if told else ""
+        return "\n".join((*beyond, *([f"{told}; where smaller ones do not help, {follows_not}"] if told else [])))
+    return f"{told}: {follows_not}" if told else ""
 
 
 def out_of_reach(tracking: Iterable[Tracking]) -> list[str]:
