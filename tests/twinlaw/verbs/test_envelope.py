@@ -21,6 +21,7 @@ from identification.envelope.truth.plan import plan
 from identification.margins import MARGINS
 from jobs.plain import plain
 from records.quality import Colour
+from tests.page_units import without_unit
 from tests.soak import SOAK
 from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
@@ -124,6 +125,7 @@ def test_the_verb_identifies_interpolates_and_draws(answered: Answered) -> None:
     assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
     assert told["summary"]["interpolation"]["flights"] == 4
     page = (answered.out / "report.html").read_text()
+    assert without_unit(page) == []
     for words in ("Table 2.1", "Tables 2.2 and 2.3", "Tables 3.1 to 3.10", "Tables 4.1 to 4.8", "HF3000ft-60kts"):
         assert words in page
     outside = {

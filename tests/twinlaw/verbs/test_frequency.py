@@ -11,6 +11,7 @@ from identification.frequency.lateral import log_columns
 from identification.frequency.match import fit
 from records.log import load_log, save_log
 from records.plant import load_plant
+from tests.page_units import without_unit
 from tests.plants import PLANTS
 from tests.soak import SOAK, sampled
 from tests.twinlaw.verbs.crews import works_here
@@ -58,6 +59,7 @@ def test_flights_become_a_plant_file_a_report_and_json(flown, monkeypatch, tmp_p
         assert found.parameters[name].value == pytest.approx(true.parameters[name].value, rel=0.1)
         assert 0.0 < found.parameters[name].sd < 0.1 * abs(found.parameters[name].value)
     page = (tmp_path / "report.html").read_text()
+    assert without_unit(page) == []
     for words in (
         "Figs. 2 and 3",
         "Fig. 5",

@@ -22,6 +22,7 @@ from sim.columns import log_columns
 from sim.manoeuvres import stir
 from sim.simulate import simulate
 from tests.diagnosis.arm import arm_log
+from tests.page_units import without_unit
 from tests.soak import SOAK, sampled
 from tests.twinlaw.verbs.crews import works_here
 from tests.twinlaw.verbs.interrupts import stops_when_told
@@ -58,6 +59,7 @@ def test_nine_experiments_give_a_plant_file_a_report_and_json(folder, monkeypatc
     np.testing.assert_allclose(plant.parameters["J_E"].value, truth.parameters["J_E"].value, rtol=5e-3)
     assert plant.design == load_plant(Path("plants/ce150.toml")).design
     page = (tmp_path / "report.html").read_text()
+    assert without_unit(page) == []
     for words in ("Fig. 7", "Fig. 8", "Fig. 10", "Fig. 13", "linear fit", "Correlation"):
         assert words in page
 
@@ -113,7 +115,9 @@ def test_a_search_over_experiments_ends_with_the_truth_beside_it(method, folder,
     assert "Psi_m" in page
     assert "Readings and residuals: " in page
     assert ('<th scope="col">bits</th>' in page) == (method == "genetic")
-    assert re.search(rf'>{method}</td><td class="whole">[\d.e+-]+</td>', page)  # a torque's sum is not in degrees
+    assert re.search(
+        rf'>{method}</td><td class="whole">[\d.e+-]+\stenths</td>', page
+    )  # a torque's sum is not in degrees
 
 
 @pytest.fixture(scope="module")

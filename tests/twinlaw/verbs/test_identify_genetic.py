@@ -15,6 +15,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.simulate import simulate
+from tests.page_units import without_unit
 from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
 
@@ -53,6 +54,7 @@ def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folde
         assert set(ours["bits"]) == set(ours["values"]) == set(beside["values"])
         assert ours["cpu_s"] > 0.0
     page = (tmp_path / "report.html").read_text()
+    assert without_unit(page) == []
     for words in (
         "Search over the whole range",
         "Evolution (Fig. 6",

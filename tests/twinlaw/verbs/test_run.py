@@ -24,6 +24,7 @@ from sim.manoeuvres import hop
 from sim.plants import MODELS
 from sim.tracking import tracking
 from tests.docs.reading.json_page import is_as_documented
+from tests.page_units import without_unit
 from tests.soak import SOAK
 from twinlaw.command import main
 from twinlaw.verbs import verify
@@ -96,6 +97,10 @@ def test_verification_has_the_fields_of_the_contract_and_passes(out: Path) -> No
         assert 0 < row["stack_bytes"] < 1024
         assert 0 < row["flash_bytes"] <= 128 * 1024
         assert 0 < row["ram_bytes"] <= 32 * 1024
+
+
+def test_every_number_of_the_page_has_a_unit(out: Path) -> None:
+    assert without_unit((out / "report.html").read_text(encoding="utf-8")) == []
 
 
 def test_the_poles_that_were_asked_for_stand_out_of_those_that_came(out: Path) -> None:

@@ -23,6 +23,7 @@ from identification.envelope.quality import check_looks
 from identification.envelope.study import Study
 from identification.margins import MARGINS, FOOT_m
 from records.quality import Quality
+from records.text.units import label
 from twinlaw.pages.page import Row, Table
 
 # Table 2.1 of the thesis, open loop at HA6000ft-50kts [%].
@@ -80,7 +81,7 @@ def tunings(checks: Sequence[Check], of: str) -> Table:
         rows.append(
             (how, *(f"{share:.1f}" for share in shares.mean(axis=0)), f"{shares.mean():.2f}", f"{held} of {flights}")
         )
-    return Table(rows, (f"start, {of}", *symbols(STATES), "mean", "flights held 3 s"))
+    return Table(rows, (f"start, {of}: outside [%]", *symbols(STATES), "mean", "flights held 3 s"))
 
 
 def by_hand(flight: Tried) -> Table:
@@ -95,7 +96,7 @@ def by_hand(flight: Tried) -> Table:
         )
         for how, found in flight.states.items()
     ]
-    return Table([*starts, *shares], (flight.flight, *STATES, "mean", "held 3 s"))
+    return Table([*starts, *shares], (flight.flight, *map(label, STATES), "mean", "held 3 s"))
 
 
 def conditions(found: Study) -> Table:
@@ -194,7 +195,9 @@ def goodness(found: Study, ways: Ways) -> Table:
         return [*(f"{mean:.2f}" for mean in means), f"{held} of {len(checks)}"]
 
     rows = _by_method(found, cells, 3)
-    return Table(rows, ("equation", *_by_group(("identification", "validation"), ("score", "without fit", "held 3 s"))))
+    return Table(
+        rows, ("equation [%]", *_by_group(("identification", "validation"), ("score", "without fit", "held 3 s")))
+    )
 
 
 def interpolation(found: Study) -> tuple[Table, Table]:

@@ -147,5 +147,7 @@ def element_tables(found: FrequencyIdentification, truth: Truth) -> list[Table]:
             value, sd, known = float(values[i, j]), float(sds[i, j]), float(true[i, j])
             element = f"{name}: {_rate(model.states[i])} by {label(columns[j])}"
             within = interval(value - NORMAL * sd, value + NORMAL * sd, sd)
-            rows.append((element, to_sd(value, sd), within, told(known, sd), off(value, known), z(value, sd, known)))
+            rows.append(
+                (element, to_sd(value, sd), within, told(known, sd), off(value, known, ""), z(value, sd, known))
+            )
     return [Table(rows, ("element", "value", "95 % interval", *TRUTH_HEADING))]

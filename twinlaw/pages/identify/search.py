@@ -71,15 +71,15 @@ def _rows(
         for found in stage.searched:
             value = float(found.values[place])
             cells.append(to_sd(value, sd))
-            cells += [off(value, known), z(value, sd, known)] if truth else []
+            cells += [off(value, known, unit), z(value, sd, known)] if truth else []
         rows.append(tuple(cells))
     return rows
 
 
 def _unit(stage: Estimate) -> str:
-    """Of a sum over all channels: none where not all of them are angles."""
-    channels = (channel for run in stage.runs for channel in run.channels)
-    return "deg" if all(unit_of(channel) == "rad" for channel in channels) else ""
+    """Of a sum over all channels: degrees of angles, tenths of their spread of others."""
+    angles = {unit_of(channel) == "rad" for run in stage.runs for channel in run.channels}
+    return " + ".join(word for angle, word in ((True, "deg"), (False, "tenths")) if angle in angles)
 
 
 def _evolution(plot: str) -> list[Section]:

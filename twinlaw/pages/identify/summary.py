@@ -54,7 +54,7 @@ def estimate_rows(
 
 
 def _against(entry: Estimated, known: float | None) -> tuple[str, str, str]:
-    return told(known, entry.sd), off(entry.value, known), z(entry.value, entry.sd, known)
+    return told(known, entry.sd), off(entry.value, known, entry.unit), z(entry.value, entry.sd, known)
 
 
 def _untold(entry: Estimated) -> str:

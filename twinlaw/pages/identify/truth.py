@@ -20,11 +20,11 @@ def told(known: float | None, sd: float) -> str:
     return "" if known is None else to_sd(known, sd)
 
 
-def off(value: float, known: float | None) -> str:
-    """How far a value is from the truth, in per cent of that; by its own size where the truth is zero."""
+def off(value: float, known: float | None, unit: str) -> str:
+    """How far a value is from the truth, in per cent of that; in its `unit` where the truth is zero."""
     if known is None:
         return ""
-    return f"{100.0 * (value / known - 1.0):+.2f} %" if known else f"{value:+.3g}"
+    return f"{100.0 * (value / known - 1.0):+.2f} %" if known else f"{value:+.3g} {unit}".rstrip()
 
 
 def z(value: float, sd: float, known: float | None) -> str:
