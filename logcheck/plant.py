@@ -23,6 +23,7 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
     """What is odd about the numbers of a log of this plant."""
     odd = [
         *_time_unit(log, name, bound),
+        *_wider_period(log, name, bound),
         *exchange_findings(log, name, bound),
         *turned_findings(log, name, bound, facts),
     ]
@@ -55,6 +56,30 @@ def _time_unit(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
     span = (float(log.t_s[0]), float(log.t_s[-1]))
     expected, remedy = "t_s and sample_period_s in seconds", "convert both to seconds"
     yield Found(Finding("time_unit", name, "t_s", *span, sentence, severity, 0, expected, remedy))
+
+
+def _wider_period(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
+    """Rows of a closed loop whole periods of the plant's controller apart, where neither table nor number tells whether there were more."""
+    own_s = bound.plant.design.get("sample_period_s")
+    if (
+        log.loop != "closed"
+        or log.table_digest is not None
+        or log.seq is not None
+        or not isinstance(own_s, float)
+        or own_s <= 0.0
+    ):
+        return
+    times = log.sample_period_s / own_s
+    if round(times) < 2 or abs(times / round(times) - 1.0) > thresholds.OF_SO_MANY:
+        return
+    wider_s = log.sample_period_s
+    sentence = (
+        f"rows are {wider_s:g} s apart, by the sidecar too, where the plant file's controller runs every {own_s:g} s: taken as all "
+        f"samples of a loop of {wider_s:g} s, as nothing in the log tells; if only 1 in {round(times)} was written, state "
+        f"sample_period_s = {own_s:g} in the sidecar"
+    )
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    yield Found(Finding("wider_period", name, "t_s", *span, sentence, NOTE, 0, "", ""))
 
 
 def _stops(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[Found]:

@@ -109,3 +109,17 @@ def test_logs_of_hardly_any_rows_are_refused_and_not_crashed_on(rows: int) -> No
 
 def test_the_columns_of_the_plant_are_those_of_its_logs() -> None:
     assert clean().columns == log_columns(plant().model)
+
+
+@pytest.mark.parametrize("factor", [2, 5])
+def test_a_period_whole_times_that_of_the_plants_controller_is_told_with_what_is_assumed(factor: int) -> None:
+    """Truth: one row in `factor` of a flight of 10 ms; with the right period in its sidecar the log itself says so."""
+    log = replace(clean(), table_digest=None, seq=None)
+    wider = replace(rows_of(log, np.arange(len(log.t_s)) % factor == 0), sample_period_s=0.01 * factor)
+    (told,) = [entry for entry in examined(wider).findings if entry.kind == "wider_period"]
+    assert f"if only 1 in {factor} was written, state sample_period_s = 0.01" in told.sentence
+    stated = kinds(examined(replace(wider, sample_period_s=0.01)))
+    assert "wider_period" not in stated
+    assert "thinned_rows" in stated
+    assert "wider_period" not in kinds(examined(replace(wider, table_digest="0" * 64)))
+    assert "wider_period" not in kinds(examined(replace(wider, loop="open")))
