@@ -21,6 +21,7 @@ from replay.flight import (
     candidates_for_missing,
     candidates_for_unmeasured,
     lagged,
+    leaps,
 )
 from replay.law import FLOAT64, Fold, ReplayLaw, Setup, each, number_type
 
@@ -153,6 +154,7 @@ class Follower:
         """Incidents alone are no explanation: enough samples in which the output moved must be the law's own answers."""
         if not trace.incidents:
             return trace
+        trace = self._peaks_misread(trace)
         if trace.samples(MISREAD) > thresholds.MOST_MISREAD * len(self.inputs):
             return Trace(trace.incidents[0].first, ())
         moved = np.concatenate([[True], np.any(self._wanted[1:] != self._wanted[:-1], axis=1)])
@@ -164,6 +166,19 @@ class Follower:
             thresholds.LEAST_EXPLAINED_SAMPLES, thresholds.LEAST_EXPLAINED_SHARE * telling.sum()
         )
         return trace if enough else Trace(trace.incidents[0].first, ())
+
+    def _peaks_misread(self, trace: Trace) -> Trace:
+        """The law given the angle of the sample before at a peak of the log's, however low, is no stale sample where a peak stands that
+        no plant has: its state behind is the same."""
+        if not any(leaps(self._flight, entry.first).any() for entry in trace.incidents if entry.kind == MISREAD):
+            return trace
+        low = [
+            replace(entry, kind=MISREAD)
+            if entry.kind == STALE_ANGLES and leaps(self._flight, entry.first, 0.0).any()
+            else entry
+            for entry in trace.incidents
+        ]
+        return replace(trace, incidents=tuple(low))
 
     def _run(self, state: Any, first: int, behind: int, inputs: NDArray[Any] | None = None) -> int:
         given = self.inputs if inputs is None else inputs
@@ -184,6 +199,10 @@ class Follower:
             carries = carries or (hypothesis.kind in (UNLOGGED, MISREAD) and bool(np.isnan(self.inputs[reached]).any()))
             if reached > row and carries:
                 carrying.append((reached, hypothesis))
+        if (
+            self._misread and leaps(self._flight, row).any()
+        ):  # the log itself shows it; a plant at rest hides what was not run
+            carrying = [entry for entry in carrying if entry[1].kind == MISREAD] or carrying
         furthest = max((reached for reached, _ in carrying), default=0)
         known = [(reached, hypothesis) for reached, hypothesis in carrying if hypothesis.kind in met]
         choice = known if furthest == n and known else carrying

@@ -292,7 +292,7 @@ def candidates_for_misread(flight: ReplayedLog, sample: int) -> list[list[Array]
     that it holds differ.
 
     Each candidate is the sample's references, then angles (2 loops,). None is of angles that all moved to where they were a sample
-    before: those a law would have kept.
+    before: those a law would have kept, unless the log's own `leaps` there.
     """
     steps, near = np.array(flight.steps_rad), flight.angle_rad[max(0, sample - 1) : sample + 3]
     if not steps.all() or sample == 0:
@@ -300,17 +300,31 @@ def candidates_for_misread(flight: ReplayedLog, sample: int) -> list[list[Array]
     held = np.isfinite(flight.angle_rad[sample])
     counts = np.array([_count(column, sample, step) for column, step in zip(flight.angle_rad.T, steps, strict=True)])
     ways = np.round(np.nan_to_num(np.abs(near - near[0])).max(axis=0) / steps)
+    ways += UNMEASURED_REACH.max() * leaps(flight, sample)  # as far as a line misses, from wherever the log leapt
     reach = np.clip(ways, UNMEASURED_REACH.max(), thresholds.MISREAD_REACH).astype(int)
     grid = np.meshgrid(*[np.arange(-most, most + 1) for most in reach], indexing="ij")
     moves = np.stack(grid, axis=-1).reshape(-1, flight.loops)
     moves = moves[np.argsort(np.abs(moves).sum(axis=1), kind="stable")]
     moved = (moves != 0) & held
     is_kept = moved.any(axis=1) & np.all(~moved | (counts + moves == np.round(near[0] / steps)), axis=1)
+    is_kept &= ~(leaps(flight, sample, 0.0) & moved).any(axis=1)
     moves, moved = moves[~is_kept], moved[~is_kept]
     product = _in_float64 if flight.counted_in_double else _in_float32
     angles = np.where((moves == 0) & held, flight.angle_rad[sample], product(counts + moves, steps))
     rows = np.hstack([np.tile(flight.reference_rad[sample], (len(moves), 1)), angles])
     return [list(rows[moved.sum(axis=1) == count]) for count in range(int(held.all()), int(held.sum()) + 1)]
+
+
+def leaps(flight: ReplayedLog, sample: int, least_counts: float = thresholds.LINE_COUNTS) -> NDArray[np.bool_]:
+    """Which angles (loops,) of the log leave the line between the readings beside them, those of the sample before do not, and come back
+    in a few: no firmware that kept a reading makes a sensor do so."""
+    if sample == 0 or not all(flight.steps_rad):
+        return np.zeros(flight.loops, dtype=bool)
+    before, here, *behind = flight.angle_rad[sample - 1 : sample + 1 + thresholds.MISREAD_IN_A_ROW]
+    lines = [before + (after - before) / rows for rows, after in enumerate(behind, 2)]
+    most = np.array(flight.steps_rad) * least_counts
+    away = [np.abs(here - line) > np.abs(before - line) + most for line in lines]  # none of what is not a number
+    return np.asarray(np.any(away, axis=0)) if away else np.zeros(flight.loops, dtype=bool)
 
 
 def _count(angle_rad: Array, sample: int, step_rad: float) -> float:

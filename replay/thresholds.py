@@ -28,6 +28,9 @@ MISREAD_REACH = Count(24, "counts", "from the log's reading at most, where its a
 MISREAD_IN_A_ROW = Count(3, "samples", "in a row at most, as by chance one of twenty comes so")
 
 # flight
+LINE_COUNTS = Limit(
+    1.5, "counts", "a line through whole counts is off by half of one, and a sensor between two by one: more is a leap"
+)
 MOST_MISSING = Limit(0.2, "share of samples", "with more missing, rows are taken as they come")
 CLOCK_ERROR = Limit(0.2, "sample periods", "measured period within 20 % of the stated replaces it")
 
