@@ -116,8 +116,8 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     Raises BadInput naming file, line and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated
     row, a number that is none, time that does not increase, an input that is not finite, a time in another unit.
     """
-    sidecar_path = path.with_suffix(".toml")
     sidecar = read_sidecar(path)
+    sidecar_path = path.with_suffix(".toml")
     flown = check_sidecar(sidecar, str(sidecar_path), columns)
     names, rows, half_row = read_whole_rows(path, lambda header: check_columns(header, str(path), columns))
     data = {name: rows[:, index] for index, name in enumerate(names)}

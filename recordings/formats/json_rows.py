@@ -41,6 +41,9 @@ def _content(text: str, where: str) -> tuple[Any, tuple[str, ...]]:
         return json.loads(text), ()
     except ValueError:
         return _lines(text, where)
+    except RecursionError:
+        got, expected = "lists within lists too deep to be read", "a list of objects, or an object a line"
+        raise BadInput("JSON", where, got, expected, "export it again") from None
 
 
 def _samples(content: Any) -> Sequence[Mapping[str, Any]] | None:

@@ -33,8 +33,8 @@ def facts_of_sidecar(text: str, where: str, columns: LogColumns) -> dict[str, An
 
 def plant_of_log(path: Path) -> str:
     """The name of the plant that a log's sidecar states; raises BadInput."""
-    sidecar_path = path.with_suffix(".toml")
     sidecar = read_sidecar(path)
+    sidecar_path = path.with_suffix(".toml")
     checks.keys(sidecar, str(sidecar_path), ("plant",), sidecar.keys())
     return checks.text(sidecar["plant"], f"{sidecar_path}: plant")
 
@@ -43,6 +43,8 @@ def read_sidecar(path: Path) -> Mapping[str, Any]:
     """What stands beside the log at `path`; a log that is not there at all is told by its own name."""
     if not path.exists():
         raise BadInput("run log", str(path), "No such file or directory", "a readable file", "check the path")
+    if not path.name:  # `.` and `/` have no sidecar beside them
+        raise BadInput("run log", str(path), "a folder", "a file NAME.csv", "name the log")
     beside = "a log is NAME.csv with NAME.toml beside it; `twinlaw import` makes both of a recording"
     return read_toml(path.with_suffix(".toml"), "sidecar of the run log", beside)
 

@@ -28,9 +28,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Read, convert, write."""
-    out: Path = chosen.out or chosen.log.with_suffix(".mf4")
-    options.demand_ending(out, ".mf4")
+    if chosen.out is not None:
+        options.demand_ending(chosen.out, ".mf4")
     log = load_known_log(chosen.log, None if chosen.plant is None else load_bound(chosen.plant))
+    out: Path = chosen.out or chosen.log.with_suffix(".mf4")
     write_atomic(out, mdf4_bytes(log))
     told = {"mf4": str(out), "rows": len(log.t_s)}
     print(json.dumps(told) if chosen.json else f"{out}  {len(log.t_s)} rows")

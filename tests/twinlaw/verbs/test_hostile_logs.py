@@ -151,3 +151,18 @@ def test_a_folder_in_a_log_s_place_is_one_clear_line(tmp_path: Path, capsys: pyt
     (tmp_path / "log.csv").mkdir()
     (tmp_path / "log.toml").write_text(SIDECAR)
     refused([str(tmp_path / "log.csv")], tmp_path / "out", ["log.csv"], capsys)
+
+
+@pytest.mark.parametrize("verb", ["export", "splits", "diagnose"])
+@pytest.mark.parametrize("folder", [".", "/"])
+def test_a_folder_without_a_name_is_no_log(verb: str, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([verb, folder]) == 2
+    told = capsys.readouterr().err
+    assert "fault of twinlaw" not in told
+    assert "run log: got a folder" in told
+
+
+def test_json_too_deep_to_be_read_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "deep.json").write_text("[" * 100_000)
+    assert main(["import", str(tmp_path / "deep.json"), "--plant", "ce150"]) == 2
+    assert "too deep" in capsys.readouterr().err
