@@ -17,6 +17,9 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
 
+# Behind, under one noise, with what a further step promises: of thirty such twins noise set anew left none less than 180 nats behind.
+LOST_NATS = 10.0 * decisions.PLAIN_TO_SEE
+
 
 def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: Set[str]) -> None:
     """Each effect of the best hypothesis in turn changed for others, while that makes it better.
@@ -66,7 +69,8 @@ def fit_twins(
     """
     starts = [start for name in first.effects for start in _twins_begun(case, found, first, name)]
     begun = [entry for entry in thread_map(lambda start: at_its_place(case, start), starts) if entry]
-    ends = [entry for entry in thread_map(lambda entry: refined(case, entry), begun) if entry]
+    near = [entry for entry in begun if not is_lost(entry.fit, first.fit)]
+    ends = [entry for entry in thread_map(lambda entry: refined(case, entry), near) if entry]
     fresh: dict[frozenset[str], FittedHypothesis] = {}
     keep_better(fresh, [*begun, *ends])
     keep_better(found, fresh.values())
@@ -87,6 +91,11 @@ def _twins_begun(
         begun += _of_its_size(case, first, name, twin, begun)
         starts += [likeliest(case, begun)] if begun else []
     return [start for start, value in starts if value > -np.inf]
+
+
+def is_lost(placed: Fit, first: Fit) -> bool:
+    """Whether a twin, fitted in the place of what it is like, is so much less likely that no noise brings it near."""
+    return first.log_likelihood - placed.log_likelihood - placed.promised > LOST_NATS
 
 
 def _is_near(known: FittedHypothesis | None, first: FittedHypothesis) -> bool:

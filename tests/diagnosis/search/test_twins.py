@@ -17,7 +17,7 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.search.beam import Search, beam_of, with_twins
-from diagnosis.search.exchange import fit_twins, is_twin, twins_of
+from diagnosis.search.exchange import LOST_NATS, fit_twins, is_lost, is_twin, twins_of
 from diagnosis.search.fitting import refined
 from diagnosis.search.noise_beside import _own_noise, hardly_told, with_noise_beside, with_noise_of
 from diagnosis.validate.fitted_logs import FittedLogs
@@ -158,6 +158,19 @@ def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew()
     again = found[frozenset(("arm.stribeck",))]
     assert again.evidence > rub.evidence - 50.0
     assert again.fit.hypothesis.effects["arm.stribeck"]["b_s"] == pytest.approx(4e-4, rel=0.05)
+
+
+def test_what_no_noise_brings_near_is_lost_unless_a_further_step_promises_to() -> None:
+    # Truth: 0.4 mN m of dry friction. A twentieth less is thousands of nats less likely, and its slopes tell of the way back.
+    case = rubbing()
+    rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
+    less = fit(case, rub.fit.hypothesis.with_effects({"arm.coulomb": {"b": 3.8e-4}}), rounds=0)
+    assert less is not None
+    assert rub.fit.log_likelihood - less.log_likelihood > 2.0 * LOST_NATS
+    assert not is_lost(less, rub.fit)
+    at_its_top = replace(less, pull=np.zeros_like(less.pull))
+    assert is_lost(at_its_top, rub.fit)
+    assert not is_lost(replace(at_its_top, log_likelihood=rub.fit.log_likelihood - 0.9 * LOST_NATS), rub.fit)
 
 
 def test_a_twin_that_was_found_better_is_kept() -> None:
