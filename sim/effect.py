@@ -1,5 +1,6 @@
 """What an effect is: physics that a rig may have and its model lacks."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -29,6 +30,7 @@ class Role(Enum):
     RATE = "how fast a sine goes in time"
     WAVES = "how often a sine goes on the way"
     PHASE = "where a sine begins"
+    DIRECTION = "where something points to: half a turn on, a size of the other sign is the same"
     LATENESS = "by how much a signal is late, s"
     JITTER = (
         "by how much lateness scatters, s: found by the likelihood, as readings that are less sure have no slope by it"
@@ -229,6 +231,18 @@ class Effect:
     def on_equations(self) -> bool:
         """Whether the model carries it, with derivatives by its parameters; otherwise it is a stage on the way of a signal."""
         return self.on_input is None and self.on_output is None
+
+    def told(self, values: Values) -> Values:
+        """The values as one tells them: of a size that may be mirrored in its angle the positive one, the angle within half a turn.
+
+        (1)  a sin(x + phase) = -a sin(x + phase + pi)
+        """
+        angle = self.having(Role.PHASE, Role.DIRECTION)
+        if angle is None:
+            return values
+        size, turned = values[self.size.symbol], values[angle.symbol]
+        within = math.remainder(turned if size >= 0.0 else turned + math.pi, 2.0 * math.pi)
+        return {**values, self.size.symbol: abs(size), angle.symbol: within}
 
     @property
     def specs(self) -> tuple[ParameterSpec, ...]:

@@ -47,7 +47,8 @@ def improved_plant(case: Case, found: FittedHypothesis) -> Plant:
     plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
     known = {name: known_beginning(case, case.library.effects[name]) for name in _carried(case, found)}
-    fitted = {name: {**fit.hypothesis.effects[name], **begins} for name, begins in known.items()}
+    library = case.library.effects
+    fitted = {name: {**library[name].told(fit.hypothesis.effects[name]), **begins} for name, begins in known.items()}
     effects = {**case.draws, **fitted}  # a draw of these very flights comes before the stated one
     if not effects:
         return plant
@@ -81,10 +82,11 @@ def estimates(case: Case, found: FittedHypothesis) -> Mapping[str, Mapping[str, 
     for name in names:
         beside = _beside_slopes(case, fit, case.library.effects[name])
         sd |= {(name, symbol): deviation for symbol, deviation in beside.items()}
+    told = {name: case.library.effects[name].told(fit.hypothesis.effects[name]) for name in names}
     return {
         name: {
             symbol: Estimate(
-                float(fit.hypothesis.effects[name][symbol]),
+                float(told[name][symbol]),
                 float(sd.get((name, symbol), 0.0)),
                 _unit(case, name, symbol),
             )

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import sympy
 
 from sim.edits import axis_of, lever, short, speed_name, with_torque
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.places import AxisPlace
 from sim.prior import COMMON, Prior
@@ -66,7 +66,7 @@ def _tilt(model: Model, axis: str, entry: AxisPlace) -> Effect:
         depends=f"torque({angle})",
         parameters=(
             EffectParameter("m", entry.torque_unit, -size, size, 0.05 * size, 0.0),
-            EffectParameter("Phi_0", "rad", -TURN, TURN, 0.0, starts=(0.0, -1.57)),
+            EffectParameter("Phi_0", "rad", -TURN, TURN, 0.0, starts=(0.0, -1.57), role=Role.DIRECTION),
             EffectParameter("e", "1", 0.0, 1.0, 0.0, refining=True),
         ),
         equation=f"- m sin({angle} - Phi_0) (1 - e + e {h}), on the {model.places.tilting} + e m cos({angle} - Phi_0) ({slope})",
@@ -97,7 +97,7 @@ def _wind(model: Model, axis: str, entry: AxisPlace) -> Effect:
         depends=f"torque({angle}, {speed})",
         parameters=(
             EffectParameter("c", entry.torque_unit, 0.0, size, 0.05 * size, 0.0),
-            EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(-1.57, 0.0, 1.57, 3.14)),
+            EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(-1.57, 0.0, 1.57, 3.14), role=Role.DIRECTION),
             EffectParameter("T_w", "s", 0.0, 2.0, 0.2),
         ),
         equation=f"+ c s |s|, s = cos({angle} - Phi_w) - T_w {speed}",
@@ -126,7 +126,7 @@ def _lift(model: Model, level: str) -> Effect:
         depends=f"torque({angle})",
         parameters=(
             EffectParameter("c", unit, 0.0, size, 0.05 * size, 0.0),
-            EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(-1.57, 0.0, 1.57, 3.14)),
+            EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(-1.57, 0.0, 1.57, 3.14), role=Role.DIRECTION),
         ),
         equation=f"+ c cos({angle} - Phi_w)",
         story="A steady draught in the room lifts the arm on one side of the room and presses it down on the other.",

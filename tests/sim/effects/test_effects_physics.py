@@ -1,6 +1,7 @@
 """Each effect on the CE150 against its formula written out in plain numbers, and its exact derivatives against differences."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,7 +11,7 @@ from records.plant import load_plant
 from sim.added_effects import combined, library, with_effects, with_values
 from sim.bind import BoundPlant, bind
 from sim.composition.table import plain_values
-from sim.effect import Effect, coefficient
+from sim.effect import Effect, Role, coefficient
 from sim.simulate import simulate
 from tests.sim.conftest import PLANTS
 from tests.sim.plain_rig import (
@@ -266,3 +267,21 @@ def test_a_plant_with_one_effect_moves_like_the_same_among_all(everything: Bound
 
 def numbers() -> dict[str, float | tuple[float, ...]]:
     return {name: entry.value for name, entry in BOUND.plant.parameters.items()}
+
+
+TURNED = [name for name, effect in LIBRARY.items() if effect.having(Role.PHASE, Role.DIRECTION)]
+
+
+@pytest.mark.parametrize("name", TURNED)
+def test_what_points_another_way_with_the_other_sign_is_told_once(everything: BoundPlant, name: str) -> None:
+    # Truth: half a turn on, and of the other sign where it may have one, the effect is the same; so it is a whole turn on.
+    effect, plain = LIBRARY[name], case(name)
+    size, angle = effect.size, effect.having(Role.PHASE, Role.DIRECTION)
+    assert angle is not None
+    sign, turn = (-1.0, np.pi) if size.lower < 0.0 else (1.0, 2.0 * np.pi)
+    other = plain.values[angle.symbol] - np.copysign(turn, plain.values[angle.symbol])
+    turned = {**plain.values, size.symbol: sign * plain.values[size.symbol], angle.symbol: other}
+    assert dict(effect.told(turned)) == pytest.approx(dict(plain.values), abs=1e-12)
+    assert outputs(placed(everything, replace(plain, values=turned)), plain.start) == pytest.approx(
+        outputs(placed(everything, plain), plain.start), abs=1e-9
+    )
