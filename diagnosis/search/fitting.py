@@ -14,20 +14,13 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero
 from diagnosis.fit.jitter import scatters, with_jitter
 from diagnosis.fit.process_noise import with_process_noise
-from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise
-from sim.effect import EffectParameter, Role
+from diagnosis.search.rough_numbers import POLISHING, STEP_FINELY, is_rough, likeliest_size, polished
+from sim.effect import Role
 
 Array = NDArray[np.float64]
-VALUES_AT_ONCE = 13  # values at a time
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
-POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
-STEP_FINELY = (
-    1e-3,
-    2e-4,
-    4e-5,
-)  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
 REFINED_ROUNDS = 5  # from where a first fit ended: its own rule stops earlier where little is gained
 MOST_TURNS = 5  # of what is rough and all else: an input's steps behind a delay of 25 ms took three
 EXPECTS_LESS = 1.0  # decades: one to three led a lag of 0.12 s and a sag home, none to a lag of 0.5 s beside a mass 16 deviations off
@@ -54,8 +47,8 @@ class Job:
 def rough(case: Case, job: Job) -> FittedHypothesis | None:
     """A first joint fit, under the process noise that was there before."""
     entry, start = job.score_test, job.begun
-    if _is_rough(case, entry.effect):
-        start = _polished(case, start, entry.effect, POLISHING)
+    if is_rough(case, entry.effect):
+        start = polished(case, start, entry.effect, POLISHING)
     begun = _from_stated(case, start) if is_astray(start, decisions.ASTRAY) else None
     found = begun or fit(case, start, rounds=4)
     if found is not None and found.log_posterior < job.start.log_posterior:
@@ -83,14 +76,14 @@ def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
     """The fit with the process noise that then remains; what is rough and all else are fitted in turns, until a turn moves all else
     little: what is rough is as likely as it was then."""
     start, effects = _under_own_noise(case, fitted.fit.hypothesis, fitted.effects), fitted.effects
-    coarse = [name for name in effects if _is_rough(case, name)]
+    coarse = [name for name in effects if is_rough(case, name)]
     if not coarse:
         found = _refined_once(case, start, effects)
         return None if found is None else as_fitted(case, found)
     best: Fit | None = None
     for _ in range(MOST_TURNS):
         for name in coarse:
-            start = _polished(case, start, name, STEP_FINELY)
+            start = polished(case, start, name, STEP_FINELY)
         begun = fit(case, start, rounds=0)
         found = None if begun is None else _refined_once(case, _under_own_noise(case, start, effects), effects)
         best = _likelier(best, found)
@@ -108,7 +101,7 @@ def _under_own_noise(case: Case, hypothesis: Hypothesis, effects: Sequence[str])
 def _refined_once(case: Case, start: Hypothesis, effects: Sequence[str]) -> Fit | None:
     """Frictions that hold, then all that has slopes."""
     for name in holding(case.library, effects):
-        start = _likeliest(case, start, name, FRICTION_FACTORS)
+        start = likeliest_size(case, start, name, FRICTION_FACTORS)
     found = fit(case, start, rounds=REFINED_ROUNDS)
     for begun in [] if found is None else _rounder(case, found.hypothesis):
         found = _likelier(found, fit(case, begun, rounds=REFINED_ROUNDS))
@@ -160,57 +153,6 @@ def _begun(case: Case, start: Hypothesis) -> Fit | None:
     return None if found is None else fit(case, with_process_noise(beginning_of(case), found.hypothesis), rounds=3)
 
 
-def _is_rough(case: Case, name: str) -> bool:
-    """Whether the likelihood by an effect's size is too rough for slopes."""
-    return case.library.effects[name].size.rough
-
-
-def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float]) -> Hypothesis:
-    """The start with the likeliest size near it, where slopes do not lead to it; steps as they lie, or at their multiples where that is no
-    less likely than what such a shape costs."""
-    found = start
-    for reach in reaches:
-        found = _likeliest(case, found, effect, np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE))
-    found = _reshaped(case, found, effect)
-    plain = _at_multiples(case, start, effect, reaches)
-    if plain is None:
-        return found
-    value, plainly = likelihoods(case, [found, plain])
-    return plain if plainly > value - decisions.SHAPE_COST else found
-
-
-def _at_multiples(case: Case, start: Hypothesis, name: str, reaches: Sequence[float]) -> Hypothesis | None:
-    """The same with steps at their multiples; None where an effect has none that may lie elsewhere."""
-    effect = case.library.effects[name]
-    shift = effect.having(Role.SHIFT)
-    if shift is None:
-        return None
-    plain, size = start.with_value(name, shift.symbol, 0.0), effect.size.symbol
-    for reach in reaches:
-        values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE)
-        plain = _likeliest_value(case, plain, name, size, values.tolist())
-    return plain
-
-
-def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:
-    """The start with the likeliest of what else is rough in an effect, over its whole range, and then beside that."""
-    for parameter in case.library.effects[name].parameters:
-        if parameter.rough and not parameter.is_size:
-            values = np.linspace(parameter.lower, parameter.upper, VALUES_AT_ONCE)
-            start = _likeliest_of(case, start, name, parameter, values)
-            beside = start.effects[name][parameter.symbol] + (values[1] - values[0]) * np.linspace(
-                -1.0, 1.0, VALUES_AT_ONCE
-            )
-            start = _likeliest_of(case, start, name, parameter, np.clip(beside, parameter.lower, parameter.upper))
-    return start
-
-
-def _likeliest_of(case: Case, start: Hypothesis, name: str, parameter: EffectParameter, values: Array) -> Hypothesis:
-    """The start with the likeliest of its own and these values of a parameter."""
-    tried = [start.effects[name][parameter.symbol], *values.tolist()]
-    return _likeliest_value(case, start, name, parameter.symbol, tried)
-
-
 def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | None:
     """The fit, or a likelier one where readings come after a delay that scatters, with the process noise that the delay leaves."""
     if found is None or not any(scatters(case, name) for name in effects):
@@ -223,44 +165,10 @@ def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | N
 
 def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:
     """The fit, or a likelier one from another level of a friction that holds its axis."""
-    start = _likeliest(case, found.hypothesis, effect, FRICTION_FACTORS)
+    start = likeliest_size(case, found.hypothesis, effect, FRICTION_FACTORS)
     if start.effects[effect] == found.hypothesis.effects[effect]:
         return found
     return _likelier(found, fit(case, start, rounds=4)) or found
-
-
-def _likeliest(case: Case, start: Hypothesis, effect: str, factors: Array) -> Hypothesis:
-    """The start with that of the factors on an effect's size that the logs find likeliest."""
-    size = start.effects[effect][case.library.effects[effect].size.symbol]
-    best, value = likeliest(case, [_sized(case, start, effect, size * factor) for factor in factors.tolist()])
-    return best if value > -np.inf else start
-
-
-def _sized(case: Case, start: Hypothesis, name: str, size: float) -> Hypothesis:
-    """The start with another size of an effect; steps that may lie anywhere stay where they were about the mean command, or another size
-    would move them all there."""
-    effect, values = case.library.effects[name], start.effects[name]
-    shift, changed = effect.having(Role.SHIFT), {**values, effect.size.symbol: size}
-    before = values[effect.size.symbol]
-    if shift is not None and before > 0.0 and size > 0.0:
-        moved = values[shift.symbol] + _mean_command(case, effect.place) * (1.0 / before - 1.0 / size)
-        changed[shift.symbol] = float(moved - np.round(moved))
-    return start.with_effects({**start.effects, name: changed})
-
-
-def _mean_command(case: Case, place: str) -> float:
-    model = case.library.bound.model
-    column = model.inputs.index(model.places.inputs[place].variable)
-    return float(np.mean(np.concatenate([flight.filter_input.u[:, column] for flight in case.flights])))
-
-
-def _likeliest_value(case: Case, start: Hypothesis, effect: str, symbol: str, values: Sequence[float]) -> Hypothesis:
-    """The start with that of the values of one number of an effect that the logs find likeliest."""
-    tried = [
-        start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: value}}) for value in values
-    ]
-    best, value = likeliest(case, tried)
-    return best if value > -np.inf else start
 
 
 def _lessened(case: Case, start: Hypothesis, effect: str) -> Hypothesis:

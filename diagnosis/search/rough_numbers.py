@@ -1,0 +1,146 @@
+"""Numbers by which the likelihood is too rough for slopes: values beside one another, of which the likeliest is taken."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis import decisions
+from diagnosis.fit.profile_likelihood import likeliest, likelihoods
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Hypothesis
+from sim.effect import Effect, EffectParameter, Role, Values
+
+Array = NDArray[np.float64]
+VALUES_AT_ONCE = 13  # values at a time
+# Shares of a step in which a likelier one is looked for, at first and once the rest fits: some hundred steps of a range tell one to a
+# hundred-thousandth.
+POLISHING, STEP_FINELY = (0.2, 0.03, 0.005), (1e-3, 2e-4, 4e-5)
+PLAINLY = 0.005  # of a step, as a share, in which its multiples are looked for where steps that lie beside theirs lie
+LEAST_FOLLOWED, MOST_FOLLOWED = (
+    0.5,
+    2.0,
+)  # times a step, to which it follows what else changes about it: beyond, it is another
+
+
+def is_rough(case: Case, name: str) -> bool:
+    """Whether the likelihood by an effect's size is too rough for slopes."""
+    return case.library.effects[name].size.rough
+
+
+def polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float]) -> Hypothesis:
+    """The start with the likeliest size near it, where slopes do not lead to it; steps as they lie, or at their multiples where that is no
+    less likely than what such a shape costs."""
+    found = start
+    for reach in reaches:
+        found = likeliest_size(case, found, effect, np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE))
+    found = _reshaped(case, found, effect)
+    plain = _at_multiples(case, start, found, effect, reaches)
+    if plain is None:
+        return found
+    value, plainly = likelihoods(case, [found, plain])
+    return plain if plainly > value - decisions.SHAPE_COST else found
+
+
+def _at_multiples(
+    case: Case, start: Hypothesis, found: Hypothesis, name: str, reaches: Sequence[float]
+) -> Hypothesis | None:
+    """What was found with steps at their multiples; None where they are there, or an effect has none that may lie elsewhere.
+
+    Of few steps a little other ones that lie a little beside lie nearly the same: their multiples are sought where those lie.
+    """
+    effect = case.library.effects[name]
+    shift, size = effect.having(Role.SHIFT), effect.size.symbol
+    if shift is None or found.effects[name][shift.symbol] == 0.0:
+        return None
+    plain = found.with_value(name, shift.symbol, 0.0)
+    tried = [start.effects[name][size], *_where_they_lie(case, effect, found.effects[name])]
+    plain = _likeliest_value(case, plain, name, size, tried)
+    for reach in reaches if reaches[0] > PLAINLY else (PLAINLY, *reaches):
+        values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE)
+        plain = _likeliest_value(case, plain, name, size, values.tolist())
+    return plain
+
+
+def _where_they_lie(case: Case, effect: Effect, values: Values) -> list[float]:
+    """Steps whose multiples lie, at those next to the mean command, where steps that lie beside theirs do: q (k - s) = q' k."""
+    step, shift = values[effect.size.symbol], values[effect.symbol(Role.SHIFT)]
+    mean = _mean_command(case, effect.place) / step if step > 0.0 else 0.0
+    levels = [np.floor(mean) + by for by in (-1.0, 0.0, 1.0, 2.0)]
+    return [float(step * (1.0 - shift / level)) for level in levels if abs(level) > abs(shift)]
+
+
+def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:
+    """The start with the likeliest of what else is rough in an effect, over its whole range, then beside that with steps that follow."""
+    for parameter in case.library.effects[name].parameters:
+        if parameter.rough and not parameter.is_size:
+            values = np.linspace(parameter.lower, parameter.upper, VALUES_AT_ONCE)
+            start = _likeliest_of(case, start, name, parameter, values)
+            beside = start.effects[name][parameter.symbol] + (values[1] - values[0]) * np.linspace(
+                -1.0, 1.0, VALUES_AT_ONCE
+            )
+            near = np.clip(beside, parameter.lower, parameter.upper).tolist()
+            tried = [other for value in near for other in _following(case, start, name, parameter.symbol, value)]
+            best, value = likeliest(case, [start, *tried])
+            start = best if value > -np.inf else start
+    return start
+
+
+def _following(case: Case, start: Hypothesis, name: str, symbol: str, value: float) -> list[Hypothesis]:
+    """The start with another value of a shape of steps: the steps as they were, and such that the command which leaves the level next to
+    the mean one upwards stays, or downwards: (L +- (1/2 + h) - s) q."""
+    effect, values = case.library.effects[name], start.effects[name]
+    size, changed = effect.size.symbol, {**start.effects[name], symbol: value}
+    found = [changed]
+    if effect.having(Role.HOLD) is not None and values[size] > 0.0:
+        level = float(np.round(_mean_command(case, effect.place) / values[size] + values[effect.symbol(Role.SHIFT)]))
+        for side in (1.0, -1.0):
+            before, behind = (_edge(effect, told, level, side) for told in (values, changed))
+            if LEAST_FOLLOWED * abs(behind) < before * np.sign(behind) < MOST_FOLLOWED * abs(behind):
+                found.append({**changed, size: values[size] * before / behind})
+    return [start.with_effects({**start.effects, name: told}) for told in found]
+
+
+def _edge(effect: Effect, values: Values, level: float, side: float) -> float:
+    """The command that leaves a level upwards, or downwards, in steps."""
+    return level + side * (0.5 + values[effect.symbol(Role.HOLD)]) - values[effect.symbol(Role.SHIFT)]
+
+
+def _likeliest_of(case: Case, start: Hypothesis, name: str, parameter: EffectParameter, values: Array) -> Hypothesis:
+    """The start with the likeliest of its own and these values of a parameter."""
+    tried = [start.effects[name][parameter.symbol], *values.tolist()]
+    return _likeliest_value(case, start, name, parameter.symbol, tried)
+
+
+def likeliest_size(case: Case, start: Hypothesis, effect: str, factors: Array) -> Hypothesis:
+    """The start with that of the factors on an effect's size that the logs find likeliest."""
+    size = start.effects[effect][case.library.effects[effect].size.symbol]
+    best, value = likeliest(case, [_sized(case, start, effect, size * factor) for factor in factors.tolist()])
+    return best if value > -np.inf else start
+
+
+def _sized(case: Case, start: Hypothesis, name: str, size: float) -> Hypothesis:
+    """The start with another size of an effect; steps that may lie anywhere stay where they were about the mean command, or another size
+    would move them all there."""
+    effect, values = case.library.effects[name], start.effects[name]
+    shift, changed = effect.having(Role.SHIFT), {**values, effect.size.symbol: size}
+    before = values[effect.size.symbol]
+    if shift is not None and before > 0.0 and size > 0.0:
+        moved = values[shift.symbol] + _mean_command(case, effect.place) * (1.0 / before - 1.0 / size)
+        changed[shift.symbol] = float(moved - np.round(moved))
+    return start.with_effects({**start.effects, name: changed})
+
+
+def _mean_command(case: Case, place: str) -> float:
+    model = case.library.bound.model
+    column = model.inputs.index(model.places.inputs[place].variable)
+    return float(np.mean(np.concatenate([flight.filter_input.u[:, column] for flight in case.flights])))
+
+
+def _likeliest_value(case: Case, start: Hypothesis, effect: str, symbol: str, values: Sequence[float]) -> Hypothesis:
+    """The start with that of the values of one number of an effect that the logs find likeliest."""
+    tried = [
+        start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: value}}) for value in values
+    ]
+    best, value = likeliest(case, tried)
+    return best if value > -np.inf else start
