@@ -14,6 +14,7 @@ from diagnosis.fit.profile_likelihood import known_to
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, known_beginning
 from diagnosis.library.coarse_grid import grid_sd
+from diagnosis.search.rough_numbers import level_of
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
@@ -82,6 +83,7 @@ def estimates(case: Case, found: FittedHypothesis) -> Mapping[str, Mapping[str, 
     for name in names:
         beside = _beside_slopes(case, fit, case.library.effects[name])
         sd |= {(name, symbol): deviation for symbol, deviation in beside.items()}
+        sd |= _of_steps(case, fit.hypothesis, name, sd)
     told = {name: case.library.effects[name].told(fit.hypothesis.effects[name]) for name in names}
     return {
         name: {
@@ -119,6 +121,21 @@ def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
         else {p.symbol: _sd_by_likelihood(case, fit.hypothesis, effect.name, p) for p in beside}
     )
     return {symbol: float(np.sqrt(fit.tempering)) * deviation for symbol, deviation in untempered.items()}
+
+
+def _of_steps(
+    case: Case, hypothesis: Hypothesis, name: str, sd: Mapping[tuple[str, str], float]
+) -> dict[tuple[str, str], float]:
+    """What is known of an input's step with where its steps lie and how long they are held, as far as these are not nothing: the command
+    that leaves a level is (L +- (1/2 + h) - s) q, so that q answers to either by q / L."""
+    effect = case.library.effects[name]
+    shift, hold = effect.having(Role.SHIFT), effect.having(Role.HOLD)
+    if shift is None or hold is None:
+        return {}
+    values, step = hypothesis.effects[name], (name, effect.size.symbol)
+    shapes = [sd.get((name, shape.symbol), 0.0) for shape in (shift, hold) if values[shape.symbol] != 0.0]
+    level = max(1.0, abs(level_of(case, effect, values)))
+    return {step: float(np.hypot(sd.get(step, 0.0), values[effect.size.symbol] / level * np.linalg.norm(shapes)))}
 
 
 def _grid_sd(case: Case, hypothesis: Hypothesis, effect: Effect) -> float:

@@ -93,12 +93,19 @@ def _following(case: Case, start: Hypothesis, name: str, symbol: str, value: flo
     size, changed = effect.size.symbol, {**start.effects[name], symbol: value}
     found = [changed]
     if effect.having(Role.HOLD) is not None and values[size] > 0.0:
-        level = float(np.round(_mean_command(case, effect.place) / values[size] + values[effect.symbol(Role.SHIFT)]))
+        level = level_of(case, effect, values)
         for side in (1.0, -1.0):
             before, behind = (_edge(effect, told, level, side) for told in (values, changed))
             if LEAST_FOLLOWED * abs(behind) < before * np.sign(behind) < MOST_FOLLOWED * abs(behind):
                 found.append({**changed, size: values[size] * before / behind})
     return [start.with_effects({**start.effects, name: told}) for told in found]
+
+
+def level_of(case: Case, effect: Effect, values: Values) -> float:
+    """The level next to the mean command of an input with steps."""
+    return float(
+        np.round(_mean_command(case, effect.place) / values[effect.size.symbol] + values[effect.symbol(Role.SHIFT)])
+    )
 
 
 def _edge(effect: Effect, values: Values, level: float, side: float) -> float:

@@ -51,6 +51,7 @@ TORQUES: list[tuple[Settings, float, float]] = [
     ({("weight", -1): 0.1, ("weight_time_s", -1): 3.5, ("weight_ramp_s", -1): 1.0}, -0.05 * TAU_G * C, 0.0),
     ({("weight", -1): 0.1, ("weight_time_s", -1): 2.0, ("weight_ramp_s", -1): 1.0}, -0.1 * TAU_G * C, 0.0),
     ({("tail_lift", -1): 2e-4, ("tail_lift_power", -1): 1.8}, 2e-4 * 2.5**1.8, 0.0),
+    ({("tail_lift", -1): -2e-4, ("tail_lift_power", -1): 1.8}, -2e-4 * 2.5**1.8, 0.0),
     ({("maxwell_Nm_rad", -1): 5e-3, ("maxwell_s", -1): 1.0}, -5e-3 * 0.3, 0.0),
     ({("lean_Nm", -1): 4e-3, ("lean_rad", -1): 0.2}, -4e-3 * S * np.cos(0.6), 0.0),
     ({("tilt_Nm", -1): 3e-3, ("tilt_rad", -1): 0.2}, 0.0, 3e-3 * C * np.sin(0.6)),

@@ -27,7 +27,7 @@ static double shared_torque(const effects_t *fx, const state_t *s, int axis, dou
 {
     double torque = s->outer_Nm[axis];
     if (fx->drag[axis] != 0.0)
-        torque -= copysign(fx->drag[axis] * pow(fabs(rate), fx->drag_power[axis]), rate);
+        torque -= fx->drag[axis] * copysign(pow(fabs(rate), fx->drag_power[axis]), rate);
     if (fx->spring[axis] != 0.0)
         torque += tether(fx, axis, angle);
     return torque;
@@ -51,7 +51,7 @@ static double elevation_torque(const rig_t *rig, const effects_t *fx, const stat
     double centre = fx->centre_rad * (1.0 + fx->centre_droop * c);
     torque -= rig->gravity_Nm * s->gravity_factor * (centre != 0.0 ? cos(x[0] + centre) : c);
     if (fx->tail_lift != 0.0)
-        torque += copysign(fx->tail_lift * pow(fabs(w) / 100.0, fx->tail_lift_power), w);
+        torque += fx->tail_lift * copysign(pow(fabs(w) / 100.0, fx->tail_lift_power), w);
     if (fx->lean_Nm != 0.0)
         torque -= fx->lean_Nm * sn * cos(x[2] - fx->lean_rad);
     if (fx->maxwell_Nm_rad != 0.0)
