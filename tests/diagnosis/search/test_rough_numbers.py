@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from diagnosis.fit.gauss_newton import fit, likelihood_of
+from diagnosis.explain.improved import estimates
+from diagnosis.fit.evidence import as_fitted
+from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.rough_numbers import POLISHING, STEP_FINELY, is_rough, likeliest_size, polished
@@ -34,8 +36,8 @@ def test_multiples_are_found_where_steps_that_lie_beside_theirs_do_nearly_the_sa
 
 
 def test_steps_follow_by_how_much_they_are_held() -> None:
-    # Truth: held 0.13 of a step beyond its half. Steps 0.4 % smaller that are held so much longer leave the level above the mean at the same
-    # command: from there neither number alone is likelier, and both together are.
+    # Truth: held 0.13 of a step beyond its half. Steps 0.4 % smaller that are held so much longer leave the level above the mean at the
+    # same command: from there neither number alone is likelier, and both together are.
     case, right = stepping(h=0.13)
     step = 0.996 * STEP_V
     held = (LEVEL + 0.63) * STEP_V / step - LEVEL - 0.5
@@ -53,3 +55,19 @@ def test_a_size_is_taken_from_the_factors_tried_and_only_where_slopes_lead_nowhe
     start = right.with_effects({NAME: {**right.effects[NAME], "q": STEP_V / (1.0 - POLISHING[0])}})
     found = likeliest_size(case, start, NAME, np.array([1.0, 1.0 - POLISHING[0]]))
     assert found.effects[NAME]["q"] == pytest.approx(STEP_V)
+
+
+def test_a_step_is_known_no_better_than_where_its_steps_lie() -> None:
+    # Truth: (L - s) q, at the level L = 5 next to the mean command, is what the logs show: of steps that lie beside their multiples by what
+    # is known to a share of one, q is known to a fifth of that share; of those at their multiples as the slopes say.
+    case, right = stepping()
+    beside = right.with_effects({NAME: {"q": STEP_V, "h": 0.0, "s": 0.05}})
+    shown = [estimates(case, as_fitted(case, found))[NAME] for found in (_fit(case, right), _fit(case, beside))]
+    assert shown[0]["q"].sd < 1e-3 * STEP_V
+    assert shown[1]["q"].sd == pytest.approx(STEP_V * shown[1]["s"].sd / LEVEL, rel=0.05)
+
+
+def _fit(case: Case, at: Hypothesis) -> Fit:
+    found = fit(case, at, rounds=0)
+    assert found is not None
+    return found

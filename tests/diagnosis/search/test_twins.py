@@ -163,7 +163,7 @@ def test_a_twin_that_a_search_from_far_away_led_to_another_hill_is_fitted_anew()
 def test_what_no_noise_brings_near_is_lost_unless_a_further_step_promises_to() -> None:
     # Truth: 0.4 mN m of dry friction. A twentieth less is thousands of nats less likely, and its slopes tell of the way back.
     case = rubbing()
-    rub = supposed(case, {"arm.coulomb": {"b": 4e-4}})
+    rub = fitted_with(case, {"arm.coulomb": {"b": 4e-4}})
     less = fit(case, rub.fit.hypothesis.with_effects({"arm.coulomb": {"b": 3.8e-4}}), rounds=0)
     assert less is not None
     assert rub.fit.log_likelihood - less.log_likelihood > 2.0 * LOST_NATS
