@@ -34,7 +34,8 @@ def polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float
     found = start
     for reach in reaches:
         found = likeliest_size(case, found, effect, np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE))
-    found = _reshaped(case, found, effect)
+    shapes = [p for p in case.library.effects[effect].parameters if p.rough and not p.is_size]
+    found = _reshaped(case, found, effect, shapes)
     plain = _at_multiples(case, start, found, effect, reaches)
     if plain is None:
         return found
@@ -56,9 +57,12 @@ def _at_multiples(
     plain = found.with_value(name, shift.symbol, 0.0)
     tried = [start.effects[name][size], *_where_they_lie(case, effect, found.effects[name])]
     plain = _likeliest_value(case, plain, name, size, tried)
-    for reach in reaches if reaches[0] > PLAINLY else (PLAINLY, *reaches):
-        values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE)
-        plain = _likeliest_value(case, plain, name, size, values.tolist())
+    others = [p for p in effect.parameters if p.rough and not p.is_size and p is not shift]
+    for wide in (reaches if reaches[0] > PLAINLY else (PLAINLY, *reaches), reaches[1:]):
+        for reach in wide:
+            values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE)
+            plain = _likeliest_value(case, plain, name, size, values.tolist())
+        plain = _reshaped(case, plain, name, others)
     return plain
 
 
@@ -70,19 +74,16 @@ def _where_they_lie(case: Case, effect: Effect, values: Values) -> list[float]:
     return [float(step * (1.0 - shift / level)) for level in levels if abs(level) > abs(shift)]
 
 
-def _reshaped(case: Case, start: Hypothesis, name: str) -> Hypothesis:
-    """The start with the likeliest of what else is rough in an effect, over its whole range, then beside that with steps that follow."""
-    for parameter in case.library.effects[name].parameters:
-        if parameter.rough and not parameter.is_size:
-            values = np.linspace(parameter.lower, parameter.upper, VALUES_AT_ONCE)
-            start = _likeliest_of(case, start, name, parameter, values)
-            beside = start.effects[name][parameter.symbol] + (values[1] - values[0]) * np.linspace(
-                -1.0, 1.0, VALUES_AT_ONCE
-            )
-            near = np.clip(beside, parameter.lower, parameter.upper).tolist()
-            tried = [other for value in near for other in _following(case, start, name, parameter.symbol, value)]
-            best, value = likeliest(case, [start, *tried])
-            start = best if value > -np.inf else start
+def _reshaped(case: Case, start: Hypothesis, name: str, shapes: Sequence[EffectParameter]) -> Hypothesis:
+    """The start with the likeliest of an effect's rough shapes, each over its whole range, then beside that with steps that follow."""
+    for shape in shapes:
+        values = np.linspace(shape.lower, shape.upper, VALUES_AT_ONCE)
+        start = _likeliest_of(case, start, name, shape, values)
+        beside = start.effects[name][shape.symbol] + (values[1] - values[0]) * np.linspace(-1.0, 1.0, VALUES_AT_ONCE)
+        near = np.clip(beside, shape.lower, shape.upper).tolist()
+        tried = [other for value in near for other in _following(case, start, name, shape.symbol, value)]
+        best, value = likeliest(case, [start, *tried])
+        start = best if value > -np.inf else start
     return start
 
 
