@@ -98,7 +98,7 @@ def names_of(joint: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Firmware:
-    """The controller's own code run again on the log; `cause` is one sentence behind its `names`, None where nothing differs.
+    """The controller's own code run again on the log; `cause` is a `sentence` behind its `names`, None where nothing differs.
 
     `lies_in` is one of LiesIn, None where nothing differs or no code was run again.
     """
@@ -109,16 +109,12 @@ class Firmware:
     cause: str | None
     names: tuple[str, ...] = ()
     lies_in: str | None = None
+    sentence: str = ""
 
     @property
     def differs(self) -> bool:
         """Whether the firmware, or what the log holds of its commands, is not as its table says."""
         return self.lies_in not in (None, LiesIn.LOG, LiesIn.UNSEEN)
-
-    @property
-    def sentence(self) -> str:
-        """The cause without its names for machines."""
-        return (self.cause or "").removeprefix(f"{' + '.join(self.names)}: ")
 
 
 @dataclass(frozen=True)

@@ -79,9 +79,11 @@ class FirmwareReplay:
 
     def record(self) -> Firmware:
         """The record of diagnosis.json."""
-        cause = None if self.cause is None else f"{self.cause}: {self.sentence}"
-        names = () if self.cause is None else names_of(self.cause)
-        return Firmware(self.replayed, self.bit_exact, self.first_difference_s, cause, names, self._lies_in(names))
+        told = (self.replayed, self.bit_exact, self.first_difference_s)
+        if self.cause is None:
+            return Firmware(*told, None, lies_in=self._lies_in(()))
+        names, sentence = names_of(self.cause), self.sentence or ""
+        return Firmware(*told, f"{self.cause}: {sentence}", names, self._lies_in(names), sentence)
 
     def _lies_in(self, names: tuple[str, ...]) -> LiesIn | None:
         if self.bit_exact or not self.replayed:

@@ -50,7 +50,14 @@ GAP = Diagnosis(
     when=(Span(0.0, 30.0, 0.25), Span(30.0, 60.0, 0.75)),
     regions=(Region("phi_rad", -1.0, 0.0, 0.4), Region("phi_rad", 0.0, 1.0, 0.6)),
     bands=(Band(0.0, 0.2, 0.7), Band(0.2, 1.0, 0.3)),
-    firmware=Firmware(True, False, 3.25, "each angle is one sample old", lies_in=LiesIn.FIRMWARE),
+    firmware=Firmware(
+        True,
+        False,
+        3.25,
+        "each angle is one sample old",
+        lies_in=LiesIn.FIRMWARE,
+        sentence="each angle is one sample old",
+    ),
     effects=(
         Hypothesis(
             "azimuth.cable_spring",
