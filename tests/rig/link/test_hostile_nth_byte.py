@@ -68,9 +68,10 @@ def test_the_attacked_session_has_as_many_bytes_as_the_page_says():
     page = " ".join((ROOT / "docs" / "faults.md").read_text(encoding="utf-8").split())
     count = sum(lengths)
     assert (
-        f"each of the {grouped(count)} bytes of a session (identify, arm, {SAMPLES} samples, disarm) in four ways: "
-        f"{grouped(len(SURVIVED) * count)} sessions"
-    ) in page
+        f"each of the {grouped(count)} bytes of a session (identify, arm, {SAMPLES} samples, disarm) in four ways"
+        in page
+    )
+    assert f"Of these {grouped(len(SURVIVED) * count)} sessions" in page
 
 
 def test_telemetry_of_an_earlier_host_is_not_taken_for_that_of_the_next():
