@@ -20,8 +20,10 @@ from blind.scoring.statistics import honest_error
 from records.errors import BadInput
 from records.model_comparison import Candidate, ComparisonLaw, ModelComparison
 from tests.blind.test_score import effect, truth
+from tests.soak import SOAK
 from twinlaw.command import main
 
+ANSWERS = 900 if SOAK else 450
 TRUE = ComparisonLaw(1.5, 0.3, 2.0, 0.6, 2.5, -0.5, 2.0, 1.5, 0.5, 0.5)
 
 
@@ -49,12 +51,12 @@ def families(count: int) -> list[Family]:
 
 @cache
 def learned() -> Calibration:
-    """What 900 answers teach."""
-    return calibrate(families(300))
+    """What ANSWERS teach."""
+    return calibrate(families(ANSWERS // 3))
 
 
 def test_a_known_law_is_found_again() -> None:
-    """900 answers; each number within what so few tell of it, four standard errors from the spread of laws of thirds of them."""
+    """Each number within what so few tell of it, four standard errors from the spread of laws of thirds of them."""
     found = learned()
     thirds = [fit(one.examples, found.decay) for one in found.families]
     for name, true in vars(TRUE).items():
