@@ -6,7 +6,7 @@ from dataclasses import replace
 from diagnosis import decisions
 from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.idle import one_less
-from diagnosis.decide.weighing import Explanations, Weighed
+from diagnosis.decide.weighing import Explanations, Weighed, weigh
 from diagnosis.decisions import held_against
 from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.evidence import FittedHypothesis
@@ -27,10 +27,10 @@ def foreseen(logs: FittedLogs, explanations: Explanations) -> dict[FittedHypothe
     better than the plant alone, over horizons from a row to a second (validate/score.py), in nats of all readings that share no error
     (`FittedLogs.readings`).
 
-    What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off. Those with
-    less evidence than the `most_asked` most evident are not asked.
+    What an effect gains in evidence alone it gains of the noise, row by row, or of what the others' forms are a little off. The
+    `most_asked` that are likeliest without it are asked.
     """
-    asked = sorted(explanations.named, key=lambda entry: -entry.evidence)[: decisions.most_asked()]
+    asked = list(weigh(explanations, {}).fitted[: decisions.most_asked()])
     fewer = [other for entry in asked for other in one_less(entry, explanations.named)]
     asked = list(dict.fromkeys([*asked, *fewer, *([] if explanations.beyond is None else [explanations.beyond])]))
     plain, readings = explanations.nominal.fit.hypothesis, logs.readings

@@ -126,3 +126,19 @@ def test_what_changes_no_prediction_matters_where_the_plant_had_to_leave_its_fil
     theta = np.full_like(plain.fit.hypothesis.theta, furthest_sd)
     bent = replace(plain, fit=replace(plain.fit, hypothesis=replace(plain.fit.hypothesis, theta=theta)))
     assert (of_consequence(seen(case, bent, moved=moved), result)[1] is None) is stands
+
+
+def test_the_likeliest_are_asked_and_not_those_that_gain_most_by_a_plant_far_from_its_own() -> None:
+    # Truth: dry friction. As many names as are asked gain more evidence, each with a parameter twenty standard deviations from what is
+    # stated, which costs (20 - 3)^2 / 2 nats that no scale lessens: the friction is likelier than all of them.
+    case = arm_case(arm_log({"arm.coulomb": {"b": 4e-4}}, seed=76))
+    plain, rub = settled(case, {}), settled(case, {"arm.coulomb": {"b": 4e-4}})
+    other = rub.fit.hypothesis.with_effects({"arm.stribeck": {"b_s": 4e-4, "v_s": 0.1, "e": 0.0}})
+    astray = replace(rub.fit, hypothesis=replace(other, theta=np.full_like(other.theta, 20.0)))
+    far = [
+        FittedHypothesis(("arm.stribeck",), astray, rub.evidence + 1.0 + number)
+        for number in range(decisions.most_asked())
+    ]
+    found = foreseen(FittedLogs(case), Explanations((*far, rub), plain, case.library, 5.0))
+    assert rub in found
+    assert found[rub] > 0.0
