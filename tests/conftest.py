@@ -42,9 +42,8 @@ def one_change(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("replay.search._pairs", lambda single: ())
 
 
-@pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A test that asks for no picture gets blank ones, but in a soak: to write them takes most of the time of a report."""
+def draws_nothing(patch: pytest.MonkeyPatch) -> None:
+    """Pictures are blank from now on, but in a soak: to write them takes most of the time of a report."""
 
     class Blank:
         def __init__(self, figure: object) -> None:
@@ -54,7 +53,13 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
             stream.write("<svg></svg>")
 
     if not SOAK:
-        monkeypatch.setattr("twinlaw.pages.plots.FigureCanvasSVG", Blank)
+        patch.setattr("twinlaw.pages.plots.FigureCanvasSVG", Blank)
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A test that asks for no picture gets blank ones."""
+    draws_nothing(monkeypatch)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -21,6 +21,7 @@ from identification.envelope.truth.plan import plan
 from identification.margins import MARGINS
 from jobs.plain import plain
 from records.quality import Colour
+from tests.conftest import draws_nothing
 from tests.page_units import without_unit
 from tests.soak import SOAK
 from tests.twinlaw.verbs.crews import works_here
@@ -115,6 +116,7 @@ def answered(folder: Path, start: tuple[float, list[str]], tmp_path_factory) -> 
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said):
         drawn_of = watched(patch, envelope_page)
         works_here(patch)
+        draws_nothing(patch)
         assert main(["envelope", "--out", str(out), *start[1], str(folder)]) == 0
     return Answered(out, said.getvalue(), drawn_of)
 

@@ -155,6 +155,7 @@ def test_it_begins_as_an_arm_unless_told_otherwise(tmp_path: Path) -> None:
         assert (tmp_path / "untold" / file).read_bytes() == (tmp_path / "told" / file).read_bytes()
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("like", sampled(BEGINNINGS, keep=["arm", "tank"]))
 def test_a_controller_is_designed_and_generated_for_it_at_once(like: str, tmp_path: Path) -> None:
     table = designed(begun(like, tmp_path))

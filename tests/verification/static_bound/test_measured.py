@@ -36,7 +36,7 @@ def nearly_cancelling(rng: np.random.Generator, pairs: Words) -> Words:
     return pairs
 
 
-# How far the bound may lie above the dearest of 3 000 inputs of each kind, by the degree of the polynomials: paths that exclude each other
+# How far the bound may lie above the dearest of 1 000 inputs of each kind, by the degree of the polynomials: paths that exclude each other
 # beyond what sets of words can show (1.18, 1.17).
 LAW_CLOSENESS = {1: 1.2, 3: 1.2}
 MOST_CYCLES = 10_500  # in float32, whatever the bits, of the polynomials of degree 3
@@ -106,7 +106,7 @@ def test_one_step_of_the_law_never_costs_more_than_its_bound(degree: int) -> Non
     table = ce150_table(degree)
     elf = alone(generate_law(table))
     bound, law = static_bound(elf, "law_step"), TargetLaw(EmulatedBoard(elf))
-    for stimulus in stimuli(table, "float32", 20_000 if SOAK else 3_000):
+    for stimulus in stimuli(table, "float32", 20_000 if SOAK else 1_000):
         states = law.start(stimulus.angles) if stimulus.states is None else stimulus.states
         law.run(states, stimulus.inputs)
     assert bound.cycles_bound < MOST_CYCLES
