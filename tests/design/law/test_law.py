@@ -13,8 +13,9 @@ from design.law import FloatLaw, law_reset, law_step, polynomial, saturate
 from design.schedule import evaluate, schedule_of
 from design.settings import read_settings
 from tests.design.helicopter import DOM2, equal, helicopter, settings_for, table_for
+from tests.law_tables import ce150_table
 
-TABLE = table_for(settings_for())
+TABLE = ce150_table()
 ANGLES = st.floats(-0.78, 0.78)
 
 
@@ -52,7 +53,7 @@ def test_law_fulfils_A_v_equals_Q_e_plus_A_minus_P_s_also_when_saturated(wishes)
 
 def test_integral_action_holds_its_voltage_where_the_error_is_zero():
     # Truth: a held voltage does not drift; rounding's last bits may ring. A P(1) of 1e-12 would move it by 2e-8 V in these 200 s.
-    table = unfiltered(TABLE)
+    table = unfiltered(table_for(settings_for()))
     state = law_reset(table, 0.0, 0.0)
     for _ in range(5):
         state, _ = law_step(table, state, 0.01, 0.02, 0.0, 0.0)
