@@ -9,6 +9,11 @@ from pathlib import Path
 from records.errors import BadInput
 
 
+def place_of(path: Path) -> str:
+    """Where a path leads in the end: one that leads round in a circle is a place of its own, at which nothing can be read."""
+    return os.path.realpath(path)
+
+
 def write_atomic(path: Path, content: str | bytes) -> None:
     """Write `content` to `path` through a temporary file in the same folder, so that a reader never meets half of it.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from records.errors import BadInput
-from records.files import write_together
+from records.files import place_of, write_together
 from tests.test_project import ROOT
 
 # A limit of this process on the size of files stands for a full disk; Python ignores the signal and meets the error.
@@ -42,3 +42,12 @@ def test_files_that_belong_together_are_all_new_or_all_old(tmp_path: Path) -> No
         write_together({tmp_path / "law.h": "new", tmp_path / "no folder" / "law.c": "new"})
     assert (tmp_path / "law.h").read_text() == "old"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["law.h", "no folder"]
+
+
+def test_a_path_that_leads_round_in_a_circle_is_no_other_place(tmp_path: Path) -> None:
+    one, other, plain = (tmp_path / name for name in ("one", "other", "plain.csv"))
+    one.symlink_to(other)
+    other.symlink_to(one)
+    (tmp_path / "link.csv").symlink_to(plain)
+    assert place_of(one) != place_of(plain)
+    assert place_of(tmp_path / "link.csv") == place_of(plain)

@@ -28,7 +28,7 @@ from recordings.mapping.mapping import ColumnMapping, load_mapping, save_mapping
 from recordings.proposal import overview, proposed
 from recordings.signals import Unmapped
 from records.errors import BadInput
-from records.files import demand_writable
+from records.files import demand_writable, place_of
 from records.log import RunLog, save_log
 from records.logs.sidecar import LOOPS
 from twinlaw.cli import console, options
@@ -103,9 +103,9 @@ def _import_file(chosen: argparse.Namespace, said: ColumnMapping) -> int:
     if not path.exists():
         raise BadInput("file", str(path), "no such file", "a readable file", "check the path")
     out = _out(chosen, chosen.dataset)
-    if out.resolve() == path.resolve():
+    if place_of(out) == place_of(path):
         raise BadInput("--out", str(out), "the recording itself", "another name", "name the log with --out NAME.csv")
-    if chosen.mapping is not None and chosen.mapping.resolve() == out.with_suffix(".toml").resolve():
+    if chosen.mapping is not None and place_of(chosen.mapping) == place_of(out.with_suffix(".toml")):
         raise BadInput(
             "--mapping", str(chosen.mapping), "the log's own sidecar", "another name", "call it NAME-mapping.toml"
         )

@@ -122,6 +122,13 @@ def test_what_cannot_be_imported_is_one_line_and_leaves_nothing(
     assert [path.name for path in rig.parent.iterdir()] == ["rig.csv"]
 
 
+def test_a_mapping_that_leads_round_in_a_circle_is_written_where_it_was_asked(rig: Path) -> None:
+    circle = rig.parent / "kept.toml"
+    circle.symlink_to(circle)
+    assert _import(rig, "--mapping", str(circle), "--column", "q_m=pos_mm", "--column", "u_V=drive") == 0
+    assert load_mapping(circle).columns.keys() == {"q_m", "u_V"}
+
+
 def test_the_recording_itself_is_never_written_over(rig: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = rig.read_bytes()
     monkeypatch.chdir(rig.parent)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from records.errors import BadInput
+from records.files import place_of
 
 PLANT_NAME = "plant.toml"
 HELD_OUT = "hold"  # what a case's logs to check on begin with
@@ -52,8 +53,8 @@ def _inside(folder: Path, plant: Path, holdout: Sequence[Path]) -> Iterator[Ques
             kept = tuple(path for path in logs if path not in told)
             yield Question(folder.resolve().name, folder / PLANT_NAME, told, kept)
         return
-    apart = {path.resolve() for path in holdout}
-    yield from (_alone(path, plant, holdout) for path in _logs_in(folder) if path.resolve() not in apart)
+    apart = {place_of(path) for path in holdout}
+    yield from (_alone(path, plant, holdout) for path in _logs_in(folder) if place_of(path) not in apart)
     for sub in sorted(folder.iterdir()):
         if (sub / PLANT_NAME).exists():
             yield from _inside(sub, plant, ())
