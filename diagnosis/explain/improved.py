@@ -130,9 +130,9 @@ def _of_steps(
     that leaves a level is (L +- (1/2 + h) - s) q, so that q answers to either by q / L."""
     effect = case.library.effects[name]
     shift, hold = effect.having(Role.SHIFT), effect.having(Role.HOLD)
-    if shift is None or hold is None:
-        return {}
     values, step = hypothesis.effects[name], (name, effect.size.symbol)
+    if shift is None or hold is None or name in case.stated or values[effect.size.symbol] == 0.0:
+        return {}  # nothing lies elsewhere, or the plant file says what is known
     shapes = [sd.get((name, shape.symbol), 0.0) for shape in (shift, hold) if values[shape.symbol] != 0.0]
     level = max(1.0, abs(level_of(case, effect, values)))
     return {step: float(np.hypot(sd.get(step, 0.0), values[effect.size.symbol] / level * np.linalg.norm(shapes)))}

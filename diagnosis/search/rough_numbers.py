@@ -17,10 +17,8 @@ VALUES_AT_ONCE = 13  # values at a time
 # hundred-thousandth.
 POLISHING, STEP_FINELY = (0.2, 0.03, 0.005), (1e-3, 2e-4, 4e-5)
 PLAINLY = 0.005  # of a step, as a share, in which its multiples are looked for where steps that lie beside theirs lie
-LEAST_FOLLOWED, MOST_FOLLOWED = (
-    0.5,
-    2.0,
-)  # times a step, to which it follows what else changes about it: beyond, it is another
+# Times a step, to which it follows what else changes about it: beyond, it is another.
+LEAST_FOLLOWED, MOST_FOLLOWED = 0.5, 2.0
 
 
 def is_rough(case: Case, name: str) -> bool:
@@ -71,7 +69,8 @@ def _where_they_lie(case: Case, effect: Effect, values: Values) -> list[float]:
     step, shift = values[effect.size.symbol], values[effect.symbol(Role.SHIFT)]
     mean = _mean_command(case, effect.place) / step if step > 0.0 else 0.0
     levels = [np.floor(mean) + by for by in (-1.0, 0.0, 1.0, 2.0)]
-    return [float(step * (1.0 - shift / level)) for level in levels if abs(level) > abs(shift)]
+    found = [float(step * (1.0 - shift / level)) for level in levels if abs(level) > abs(shift)]
+    return [other for other in found if other <= effect.size.upper]
 
 
 def _reshaped(case: Case, start: Hypothesis, name: str, shapes: Sequence[EffectParameter]) -> Hypothesis:
@@ -98,12 +97,13 @@ def _following(case: Case, start: Hypothesis, name: str, symbol: str, value: flo
         for side in (1.0, -1.0):
             before, behind = (_edge(effect, told, level, side) for told in (values, changed))
             if LEAST_FOLLOWED * abs(behind) < before * np.sign(behind) < MOST_FOLLOWED * abs(behind):
-                found.append({**changed, size: values[size] * before / behind})
+                step = float(values[size] * before / behind)
+                found += [{**changed, size: step}] if step <= effect.size.upper else []
     return [start.with_effects({**start.effects, name: told}) for told in found]
 
 
 def level_of(case: Case, effect: Effect, values: Values) -> float:
-    """The level next to the mean command of an input with steps."""
+    """The level next to the mean command of an input with steps; the step is not 0."""
     return float(
         np.round(_mean_command(case, effect.place) / values[effect.size.symbol] + values[effect.symbol(Role.SHIFT)])
     )
