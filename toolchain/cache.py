@@ -27,11 +27,15 @@ def _users_own() -> Path:
 
 
 def _writable(place: Path) -> bool:
-    """Whether files can be made there and in what of it is there already, which another user may have made; makes the folder."""
+    """Whether files can be made there and in what of it is there already, which another user may have made; makes the folder.
+
+    A name in bytes that are no UTF-8 could not be told to the compiler.
+    """
     try:
+        str(place).encode()
         place.mkdir(parents=True, exist_ok=True)
         return all(os.access(folder, os.W_OK | os.X_OK) for folder in _folders(place, DEEPEST))
-    except OSError:
+    except (OSError, UnicodeEncodeError):
         return False
 
 
@@ -49,18 +53,24 @@ def room_bytes() -> int:
 
 
 def _temporary() -> Path:
-    """The same for all processes of a user; a folder of that name that somebody else has made is not trusted with libraries."""
+    """The same for all processes of a user; a folder of that name that somebody else has made is not trusted with libraries.
+
+    Where no folder at all can be written it is one that is not there: who writes first tells so.
+    """
     user = os.getuid() if hasattr(os, "getuid") else None
-    place = Path(tempfile.gettempdir()) / f"twinlaw-{user}"
-    place.mkdir(mode=0o700, exist_ok=True)
-    return place if user in (None, place.stat().st_uid) else Path(tempfile.mkdtemp(prefix="twinlaw-"))
+    try:
+        place = Path(tempfile.gettempdir()) / f"twinlaw-{user}"
+        place.mkdir(mode=0o700, exist_ok=True)
+        return place if user in (None, place.stat().st_uid) else Path(tempfile.mkdtemp(prefix="twinlaw-"))
+    except OSError:
+        return Path(os.sep, "tmp", f"twinlaw-{user}")
 
 
 def elsewhere(asked: str | None, found: Path) -> str:
     """What is to be said where the folder that was asked for is not the one in use; empty where it is, or none was."""
     if not asked or Path(asked).expanduser().absolute() == found:
         return ""
-    return f"TWINLAW_CACHE={asked} cannot be written: what can be made again is kept in {found}"
+    return f"TWINLAW_CACHE={asked} cannot be used: what can be made again is kept in {found}"
 
 
 _ASKED = os.environ.get("TWINLAW_CACHE")

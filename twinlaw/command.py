@@ -8,6 +8,7 @@ import gc
 import json
 import logging
 import os
+import re
 import signal
 import sys
 import traceback
@@ -83,9 +84,20 @@ def _demand_utf8(words: Sequence[str]) -> None:
         try:
             word.encode()
         except UnicodeEncodeError:
-            told = os.fsencode(word).decode("utf-8", "backslashreplace")
-            got, remedy = "bytes that are no UTF-8", "rename it"
-            raise BadInput("name on the command line", told, got, "a name in UTF-8", remedy) from None
+            raise _no_utf8("name on the command line", word) from None
+
+
+def _no_utf8(what: str, name: str) -> BadInput:
+    told = os.fsencode(name).decode("utf-8", "backslashreplace")
+    return BadInput(what, told, "bytes that are no UTF-8", "a name in UTF-8", "rename it")
+
+
+def _found_name(error: UnicodeEncodeError) -> str:
+    """The word in which the byte stands that a name on the disk has brought."""
+    return (
+        re.split(r"[\s\"'`<>]", error.object[: error.start])[-1]
+        + re.split(r"[\s\"'`<>]", error.object[error.start :])[0]
+    )
 
 
 def _obey(words: Sequence[str], alone: bool) -> int:
@@ -100,9 +112,17 @@ def _obey(words: Sequence[str], alone: bool) -> int:
         _tell_program(words, {"error": error.line})
         raise
     except BadInput as error:
-        console.fail(str(error))
-        _tell_program(words, {"error": str(error), **asdict(error)})
-        return 2
+        return _bad_input(error, words)
+    except UnicodeEncodeError as error:  # of a folder's files, or of the folder of the program itself
+        if error.reason != "surrogates not allowed":
+            raise
+        return _bad_input(_no_utf8("name of a file or folder", _found_name(error)), words)
+
+
+def _bad_input(error: BadInput, words: Sequence[str]) -> int:
+    console.fail(str(error))
+    _tell_program(words, {"error": str(error), **asdict(error)})
+    return 2
 
 
 def _collect_seldom() -> None:

@@ -83,3 +83,24 @@ def test_a_cache_in_which_another_user_has_made_folders_is_left_to_that_user(
     (checkout / ".cache" / "zig" / "h").mkdir(parents=True)
     sealed(monkeypatch, checkout / ".cache" / inner)
     assert cache_dir(checkout, None) == user_folder
+
+
+def test_a_folder_whose_name_is_no_utf8_is_passed_over(checkout: Path, tmp_path: Path, user_folder: Path) -> None:
+    """Truth: the byte 0xE4 alone is no UTF-8, as Python hands it on, and the compiler could not be told of it."""
+    asked = tmp_path / "d\udce4r"
+    assert cache_dir(checkout, str(asked)) == checkout / ".cache"
+    (asked / "pyproject.toml").parent.mkdir()
+    (asked / "pyproject.toml").touch()
+    assert cache_dir(asked, None) == user_folder
+    assert cache.elsewhere(str(asked), user_folder).startswith(f"TWINLAW_CACHE={asked} cannot be used")
+
+
+def test_where_no_folder_at_all_can_be_written_that_is_left_to_who_writes_first(
+    checkout: Path, tmp_path: Path, user_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def none() -> str:
+        raise FileNotFoundError("No usable temporary directory found")
+
+    monkeypatch.setattr(cache.tempfile, "gettempdir", none)
+    sealed(monkeypatch, checkout, tmp_path)
+    assert not cache_dir(checkout, None).is_relative_to(tmp_path)

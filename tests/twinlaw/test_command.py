@@ -44,6 +44,21 @@ def test_a_name_that_is_no_utf8_is_refused_before_anything_is_made(name: bytes, 
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.parametrize(("text", "told"), [("b'2:a\udce4.csv' of 3", r"2:a\xe4.csv"), ("\udcff", r"\xff")])
+def test_a_name_on_the_disk_that_is_no_utf8_is_told_as_bad_input(
+    text: str, told: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Truth: in a folder that was named lies a file whose name has the lone byte; it is met in the middle of a verb."""
+
+    def broken(words: list[str]) -> int:
+        return len(text.encode())
+
+    monkeypatch.setattr(command, "build_parser", broken)
+    assert main(["diagnose", "--json"]) == 2
+    content = json.loads(capsys.readouterr().out)
+    assert (content["where"], content["remedy"]) == (told, "rename it")
+
+
 @pytest.mark.parametrize("writable", [True, False])
 def test_a_cache_that_cannot_be_written_where_it_was_asked_for_is_told_once(tmp_path: Path, writable: bool) -> None:
     """Truth: in place of the folder stands a file, and nothing is made there; doctor names both."""
@@ -53,7 +68,7 @@ def test_a_cache_that_cannot_be_written_where_it_was_asked_for_is_told_once(tmp_
     given = {**os.environ, "TWINLAW_CACHE": str(asked), "PYTHONPATH": str(ROOT)}
     words = [sys.executable, "-m", "twinlaw.command", "doctor", "--json"]
     done = subprocess.run(words, cwd=tmp_path, env=given, capture_output=True, text=True, check=False)
-    told = f"twinlaw: TWINLAW_CACHE={asked} cannot be written: what can be made again is kept in "
+    told = f"twinlaw: TWINLAW_CACHE={asked} cannot be used: what can be made again is kept in "
     found = {entry["name"]: entry for entry in json.loads(done.stdout)}
     if writable:
         assert done.stderr == ""

@@ -5,6 +5,7 @@ Exit status 2 where something is missing that every verb needs, as of any verb t
 
 import argparse
 import json
+import os
 import platform
 import re
 import shutil
@@ -92,7 +93,8 @@ def examine() -> Iterator[Requirement]:
     """Every finding, what all verbs need first."""
     yield Requirement("Python", NEEDED, platform.python_version(), "")
     yield Requirement("system", "see the README: where it runs", f"{platform.system()} {platform.machine()}", "")
-    yield Requirement("cache", NEEDED, str(CACHE_DIR), "")
+    kept = str(CACHE_DIR) if os.access(CACHE_DIR, os.W_OK) else None
+    yield Requirement("cache", NEEDED, kept, "TWINLAW_CACHE=DIR: a folder that can be written")
     if NOT_AS_ASKED:
         yield Requirement("TWINLAW_CACHE", "the cache where you want it", None, "name a folder that can be written")
     yield from packages(_project())

@@ -11,6 +11,7 @@ import pytest
 from tests.test_project import ROOT
 from toolchain import host
 from twinlaw.command import main
+from twinlaw.verbs import doctor
 from twinlaw.verbs.doctor import NEEDED, packages
 
 
@@ -33,6 +34,15 @@ def test_a_program_that_is_not_there_is_missing_with_its_remedy(
     line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("stm32flash"))
     assert "missing" in line
     assert line.endswith("apt install stm32flash")
+
+
+def test_a_cache_that_nobody_can_write_is_missing_with_its_remedy(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(doctor, "CACHE_DIR", tmp_path / "none")
+    monkeypatch.setattr(doctor, "_compiler", lambda: "works")
+    assert main(["doctor"]) == 2
+    assert "got no cache, expected what every verb needs; TWINLAW_CACHE=DIR" in capsys.readouterr().err
 
 
 def test_packages_come_by_the_extra_that_asks_for_them() -> None:
