@@ -176,6 +176,31 @@ LONGEST_HELD_S = Limit(
     0.2, "s", "readings repeated so long move on by all that they missed; longer ones are dead stretches"
 )
 
+# spikes
+SPIKE_STEPS = Limit(
+    2.75,
+    "least moves",
+    "off the way on both sides",
+    "75 outputs of published recordings, 6 100 of sealed cases: with these limits no row",
+)
+UNSPOILT_PERCENT = Limit(
+    90.0, "percentile", "of how far rows are off their way, whatever spikes in one of twenty add to that"
+)
+SPIKE_FACTOR = Limit(4.0, "times that", "off the way: a noisy sensor often is")
+SPIKE_SPREAD = Limit(
+    0.75, "share of it", "by which the lines beside may disagree about it: an axis that shakes has no line"
+)
+MOST_OFF_ARE_SPIKES = Limit(
+    0.5,
+    "share of the rows that are so far off",
+    "0.38 at most of honest outputs, 0.7 and more with up to 8 % of spikes",
+)
+SHAKES_ROWS = Count(3, "rows", "from one to the next at most, at a third of the sampling rate and above")
+MOST_NEAR = Limit(0.6, "share of the rows found", "that are so near to another: 0.4 by chance with 8 % of spikes")
+LEAST_SPIKES = Count(3, "readings", "fewer in a log are chance")
+LEAST_SPIKES_SHARE = Limit(0.001, "share of rows", "a carriage between two blows: three rows of 24 841")
+SPIKE_ROWS = Count(5, "rows", "in which spikes come together by chance, once some are found")
+
 # stamps
 LEAST_ROWS = Count(
     50,

@@ -11,6 +11,7 @@ from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows,
 from logcheck.held import held_findings, stale_findings
 from logcheck.leaps.motion import wrap_findings
 from logcheck.leaps.seams import seam_findings
+from logcheck.spikes import spike_findings
 from logcheck.stands.clipped import clipped_findings
 from logcheck.stands.dead import dead_findings, read_again
 from logcheck.stands.standing import end_findings
@@ -112,8 +113,14 @@ def value_findings(
     if not held:
         yield from stale_findings(log, name, steps, positions)
     yield from end_findings(without(log, dead), name, steps, begins, positions, moved_by)
-    for column in log.columns.outputs:
-        yield from _glitches(log, name, column, steps.get(column, 0.0))
+    glitches = [
+        found for column in log.columns.outputs for found in _glitches(log, name, column, steps.get(column, 0.0))
+    ]
+    yield from glitches
+    if not held:
+        read = without(log, [*dead, *glitches])
+        for column in (column for column in log.columns.outputs if column in positions):
+            yield from spike_findings(read, name, column, steps.get(column, 0.0))
 
 
 def _ends_in(dead: Collection[Found], begins: Rows) -> bool:

@@ -199,7 +199,7 @@ def _compared(
     """
     if replay.sent is None or not has_replayable_columns(log, table):
         return replay, None
-    begins, unread = None, False
+    begins, unread, whole = None, False, None
     if log.columns == log_columns(bound.model):
         found = examine([log], bound, names=[path.stem])
         demand_log(found, OTHER_NUMBERS)
@@ -213,6 +213,8 @@ def _compared(
                 return _not_compared(replay, path, whole.sentence)
         log = as_sent(as_read(log, looked), looked)
     replayed = replay_stretches(log, table, begins=begins)
+    if whole is not None and replayed.record().differs:  # what was left out may be told better by all that was logged
+        replayed = whole
     if replayed.bit_exact and unread:
         said = "with the readings that the law had in place of those that were left out, every bit agrees"
         return _not_compared(replay, path, said)
