@@ -23,6 +23,8 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
     Of an output that travels more than SLOW_COUNTS in a row T is too few rows to tell that. Noise makes counts change to and fro beside an
     edge, so that none of them tells when it was passed: where that is the likelier reason, readings stay what they were.
     """
+    if noise_moves_counts(t_s, y, step):
+        return y, r
     seen = np.flatnonzero(np.isfinite(y))
     moved = np.diff(y[seen])
     after = np.flatnonzero(moved) + 1
@@ -32,8 +34,6 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
     edge, moved = 0.5 * (y[rows] + y[before]), moved[after - 1]
     h, lasts, signs = t_s[rows] - t_s[before], np.diff(t_s[rows]), np.sign(moved)
     row = float(np.median(np.diff(t_s[seen])))
-    if _noisy(lasts / row, signs):
-        return y, r
     travel = step * h / _shorter(lasts, signs)
     one_row = h < decisions.MORE_THAN_ONE * row
     sharp = (np.abs(moved) < decisions.MORE_THAN_ONE * step) & one_row & (travel < decisions.SLOW_COUNTS * step)
@@ -44,7 +44,16 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
     return found_y, found_r
 
 
-def _noisy(lasts: Array, signs: Array) -> bool:
+def noise_moves_counts(t_s: Array, y: Array, step: float) -> bool:
+    """Whether noise is the likelier reason why readings (n,) on a grid of `step` leave counts again where they entered them."""
+    t_s, y = t_s[np.isfinite(y)], y[np.isfinite(y)]
+    after = np.flatnonzero(np.diff(y)) + 1
+    if step <= 0.0 or len(after) < 2:
+        return False
+    return _undone(np.diff(t_s[after]) / float(np.median(np.diff(t_s))), np.sign(np.diff(y)[after - 1]))
+
+
+def _undone(lasts: Array, signs: Array) -> bool:
     """Whether noise is the likelier reason why counts are left where they were entered, by their lengths in rows `lasts` (k - 1,) and the
     ways of the k changes.
 

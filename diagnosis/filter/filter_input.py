@@ -8,16 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.filter.edges import sharpened
+from diagnosis.filter.readings import readings_of
 from records.log import RunLog
 from records.plant import Plant
 from sim.paths.path import Held, InputStage, passed
 
 Array = NDArray[np.float64]
-DIFFERENCES = (
-    (2, 6.0),
-    (4, 70.0),
-)  # order, and by how much it makes white noise's variance larger: the sum of squared binomials
 AT_ONCE_S = 1e-7  # instants closer to one another are one
 # What stands for none: of a reading, and of what is known at an instant.
 READINGS = {"y": np.nan, "r": 1.0, "read": np.nan, "standing": 1.0, "usual": 0.0, "place": -1}
@@ -86,22 +82,16 @@ def filter_input_of(
     """The filter input of a log: `outputs` are the plant's own and then the states that the log may carry; rows not
     `used` have no measurement."""
     rows = len(log.t_s)
-    read = np.full((rows, len(outputs)), np.nan)
-    standing, single = np.ones_like(read), np.full(len(outputs), np.inf)
+    read, y = np.full((rows, len(outputs)), np.nan), np.full((rows, len(outputs)), np.nan)
+    standing, r, single = np.ones_like(read), np.ones_like(read), np.full(len(outputs), np.inf)
+    used = np.ones(rows, dtype=bool) if used is None else used
     for place, name in enumerate(outputs):
         if name in log.columns.outputs or name in log.extra:
             read[:, place] = log.column(name)
-            standing[:, place] = _standing(read[:, place])
-            single[place] = _variance(read[:, place], plant.sensors.get(name, 0.0), variance_stated(plant, name))
-    if used is not None:
-        read[~used] = np.nan
-    y, r = read.copy(), np.where(np.isfinite(single), standing * single, 1.0)
-    for place, name in enumerate(outputs):
-        step = plant.sensors.get(name, 0.0)
-        if (
-            single[place] <= step**2 / 12.0
-        ):  # with noise a reading is carried over an edge and back: the edge tells nothing
-            y[:, place], r[:, place] = sharpened(log.t_s, read[:, place], r[:, place], step)
+            step, stated = plant.sensors.get(name, 0.0), variance_stated(plant, name)
+            found = readings_of(log.t_s, read[:, place], used, step, stated)
+            y[:, place], r[:, place], standing[:, place], single[place] = found.y, found.r, found.standing, found.single
+    read[~used] = np.nan
     return FilterInput(
         log.t_s,
         log.u,
@@ -127,50 +117,9 @@ def _untold(t_s: Array) -> Array:
     return np.where(step > decisions.MORE_THAN_ONE * usual, step - usual, 0.0)
 
 
-def _standing(y: Array) -> Array:
-    """How many rows each reading stands for: the same count read again and again says no more than once."""
-    count = np.ones(len(y))
-    seen = np.flatnonzero(np.isfinite(y))
-    if len(seen):
-        number = np.append(0, np.cumsum(np.diff(y[seen]) != 0.0))
-        count[seen] = np.bincount(number)[number]
-    return count
-
-
 def variance_stated(plant: Plant, output: str) -> float:
     """Variance of a reading by its encoder's step and its noise."""
     return plant.sensors.get(output, 0.0) ** 2 / 12.0 + plant.sensor_noise.get(output, 0.0) ** 2
-
-
-def _variance(y: Array, step: float, stated: float) -> float:
-    """Variance of a measurement: that of its encoder's step and noise, or what its differences show where that is clearly more.
-
-    White noise of variance r leaves second differences of 6 r and fourth ones of 70 r; the smaller says more, as motion adds to both.
-    Rounding leaves 6 step^2 / 12 on average, and twice as much of a steady motion that it rounds up and down in turns: what is more is
-    noise. What is far beyond the usual is left out. Where no step is stated the readings' own counts: a speed that is logged in whole
-    counts mostly stands still, but is not exact for that.
-    """
-    seen = min(_scatter(y, order, times, step) for order, times in DIFFERENCES)
-    if not step:
-        return max(stated + _finest(y) ** 2 / 12.0, seen, 1e-18)
-    return min(seen, 100.0 * stated) if seen > stated + step**2 / 12.0 else stated
-
-
-def _scatter(y: Array, order: int, times: float, step: float) -> float:
-    """The variance of white noise that leaves such differences of an order, in which it is `times` as large; 0 of too few readings."""
-    change = np.abs(np.diff(y[np.isfinite(y)], order))
-    if not change.size:
-        return 0.0
-    usual = max(1.4826 * float(np.median(change)), step)
-    return (
-        float(np.mean(np.minimum(change, decisions.BEYOND_CHANCE * usual) ** 2)) / times if step else usual**2 / times
-    )
-
-
-def _finest(y: Array) -> float:
-    """The smallest difference between any two readings that differ, 0 where none do."""
-    gaps = np.diff(np.unique(y[np.isfinite(y)]))
-    return float(gaps.min()) if gaps.size else 0.0
 
 
 def beginning(filter_input: FilterInput, seconds: float) -> FilterInput:
