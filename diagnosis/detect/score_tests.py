@@ -1,7 +1,7 @@
 """Score tests of all effects: how much of what is left a signature explains once the plant's own coefficients have had their share."""
 
-from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
 from itertools import chain, product
 
 import numpy as np
@@ -34,7 +34,7 @@ FARTHEST_SIZE = 30.0  # references: no larger size is proposed
 class ScoreTest:
     """An effect with values to start a fit from: `z` its efficient score in standard deviations, `gain` of the log likelihood to first
     order, `absorbed` the share of its signature that the plant's coefficients imitate, `power` the score that its reference size
-    would have."""
+    would have. `others` are further values that promise nearly as much, from which a fit may end on another hill."""
 
     effect: str
     values: Values
@@ -42,6 +42,7 @@ class ScoreTest:
     gain: float
     absorbed: float
     power: float
+    others: tuple[Values, ...] = ()
 
 
 def score_effects(
@@ -102,7 +103,17 @@ def _smooth(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
         runs = passes(case, hypothesis.with_effects({**touched, **hypothesis.effects}), places, slopes=True)
         if runs is not None:
             found += _judged(case, linearisation, touched, runs)
-    return found
+    return [
+        _best(entry for entry in found if entry.effect == name)
+        for name in dict.fromkeys(entry.effect for entry in found)
+    ]
+
+
+def _best(found: Iterable[ScoreTest]) -> ScoreTest:
+    """The best of one effect's, with the others that promise enough: by first order nobody knows which shape's hill is the highest."""
+    best, *others = sorted(found, key=lambda entry: -entry.gain)
+    least = max(decisions.PROMISED_SHARE * best.gain, float(decisions.TAKEN_IN))
+    return replace(best, others=tuple(o.values for o in others[: decisions.NEXT - 1] if o.gain > least))
 
 
 def _is_sought(effect: Effect) -> bool:

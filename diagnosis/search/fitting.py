@@ -17,7 +17,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise
 from diagnosis.search.rough_numbers import POLISHING, STEP_FINELY, is_rough, likeliest_size, polished
-from sim.effect import Role
+from sim.effect import Role, Values
 
 Array = NDArray[np.float64]
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
@@ -40,13 +40,26 @@ class Job:
     @property
     def begun(self) -> Hypothesis:
         """Where its fit begins."""
-        hypothesis, entry = self.start.hypothesis, self.score_test
-        return hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
+        return self._at(self.score_test.values)
+
+    @property
+    def all_begun(self) -> list[Hypothesis]:
+        """Where else it may begin too, the most promising first."""
+        return [self._at(values) for values in (self.score_test.values, *self.score_test.others)]
+
+    def _at(self, values: Values) -> Hypothesis:
+        hypothesis = self.start.hypothesis
+        return hypothesis.with_effects({**hypothesis.effects, self.score_test.effect: values})
 
 
 def rough(case: Case, job: Job) -> FittedHypothesis | None:
-    """A first joint fit, under the process noise that was there before."""
-    entry, start = job.score_test, job.begun
+    """A first joint fit, under the process noise that was there before, the better one where it may begin at several values."""
+    found = [_rough(case, job, start) for start in job.all_begun]
+    return max((entry for entry in found if entry), key=lambda entry: entry.evidence, default=None)
+
+
+def _rough(case: Case, job: Job, start: Hypothesis) -> FittedHypothesis | None:
+    entry = job.score_test
     if is_rough(case, entry.effect):
         start = polished(case, start, entry.effect, POLISHING)
     begun = _from_stated(case, start) if is_astray(start, decisions.ASTRAY) else None
