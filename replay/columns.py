@@ -39,7 +39,7 @@ class _Line:
 
 
 def given_columns(table: ControllerTable) -> Iterator[Variant]:
-    """References or angles taken for each other, and each of them with its sign turned."""
+    """References or angles taken for each other, one of these two with its sign turned too, and each of all so alone."""
     names, count = [loop.axis for loop in table.loops], 2 * len(table.loops)
     for begin, what in ((0, "references"), (len(names), "angles")):
         for one, other in combinations(range(len(names)), 2):
@@ -48,11 +48,18 @@ def given_columns(table: ControllerTable) -> Iterator[Variant]:
             which = "two" if len(names) == 2 else f"{names[one]} and {names[other]}"
             sentence = f"takes its {which} {what} for each other, or the log has these columns exchanged"
             yield Variant(INPUTS_EXCHANGED, "columns", sentence, partial(replace, columns=tuple(columns)))
+            for place in (begin + one, begin + other):
+                turned = f"{sentence}, and the {names[place - begin]}'s with the other sign"
+                change = partial(replace, columns=tuple(columns), signs=_turned(place, count))
+                yield Variant(f"{INPUTS_EXCHANGED} + {INPUT_SIGN}", "columns", turned, change)
     given = [f"{name} {what}" for what in ("reference", "angle") for name in names]
     for place, what in enumerate(given):
-        signs = tuple(-1.0 if column == place else 1.0 for column in range(count))
         sentence = f"takes the {what} with the other sign than the log"
-        yield Variant(INPUT_SIGN, "columns", sentence, partial(replace, signs=signs))
+        yield Variant(INPUT_SIGN, "columns", sentence, partial(replace, signs=_turned(place, count)))
+
+
+def _turned(place: int, count: int) -> tuple[float, ...]:
+    return tuple(-1.0 if column == place else 1.0 for column in range(count))
 
 
 def constant_inputs(flight: ReplayedLog, names: Sequence[str]) -> Iterator[Variant]:

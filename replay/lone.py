@@ -10,7 +10,7 @@ import numpy as np
 from records.table import ControllerTable
 from replay import thresholds
 from replay.law import Setup
-from replay.variants import Variant, by_angles
+from replay.variants import Variant, by_angles, outputs_off
 
 PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
 ROWS = ("q_V_rad", "p")
@@ -19,7 +19,13 @@ LOGGED_LATE, ANGLE_LOGGED_LATE = "reference_logged_late", "angle_logged_late"
 
 def lone_variants(table: ControllerTable) -> list[Variant]:
     """Those that are too many, or too fine, to be paired with others."""
-    return [*_older_angles(table), *_angles_logged_late(table), *_other_times_of_references(), *_last_places(table)]
+    return [
+        *_older_angles(table),
+        *_angles_logged_late(table),
+        *_other_times_of_references(),
+        *_farther_outputs(),
+        *_last_places(table),
+    ]
 
 
 def _older_angles(table: ControllerTable) -> Iterator[Variant]:
@@ -47,6 +53,11 @@ def _other_times_of_references() -> Iterator[Variant]:
         if samples > PAIRED_AGE:
             old = f"used references {_samples(samples)} old"
             yield Variant("stale_reference", "references", old, partial(replace, reference_lag=samples))
+
+
+def _farther_outputs() -> Iterator[Variant]:
+    for samples in range(PAIRED_AGE + 1, thresholds.FARTHEST_OUTPUTS + 1):
+        yield from outputs_off(samples, _samples(samples))
 
 
 def _samples(count: int) -> str:

@@ -36,6 +36,7 @@ CLOCK_ERROR = Limit(0.2, "sample periods", "measured period within 20 % of the s
 
 # lone
 OLDEST_ANGLES = Count(4, "samples", "oldest stale angle tried")
+FARTHEST_OUTPUTS = Count(3, "samples", "late or early that an output is tried, as the log check asks of columns")
 OLDEST_REFERENCES = Count(50, "samples", "oldest stale reference tried")
 
 # midair

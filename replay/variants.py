@@ -66,10 +66,15 @@ def _timing(table: ControllerTable) -> Iterator[Variant]:
         yield Variant(
             "stale_reference", "references", f"used references {what} old", partial(replace, reference_lag=samples)
         )
-        late = f"sent its output {what} late, or the log has it so"
-        yield Variant(LATE_OUTPUT, "output", late, partial(replace, output_lag=samples))
-        early = f"would have sent its output {what} before it read the angles, so the log has it early"
-        yield Variant(EARLY_OUTPUT, "output", early, partial(replace, output_lag=-samples))
+        yield from outputs_off(samples, what)
+
+
+def outputs_off(samples: int, what: str) -> Iterator[Variant]:
+    """The output so many samples late, and early, as `what` says."""
+    late = f"sent its output {what} late, or the log has it so"
+    yield Variant(LATE_OUTPUT, "output", late, partial(replace, output_lag=samples))
+    early = f"would have sent its output {what} before it read the angles, so the log has it early"
+    yield Variant(EARLY_OUTPUT, "output", early, partial(replace, output_lag=-samples))
 
 
 def _other_tables(table: ControllerTable, others: Sequence[ControllerTable]) -> Iterator[Variant]:

@@ -41,6 +41,13 @@ def _exchanged(own: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 TAMPERED = [
     (lambda log: replace(log, u=log.u[:, ::-1].copy()), "outputs_exchanged", "two outputs"),
     (lambda log: replace(log, y=log.y[:, ::-1].copy()), "inputs_exchanged", "two angles"),
+    (
+        lambda log: replace(log, y=log.y[:, ::-1] * [1.0, -1.0]),
+        "inputs_exchanged + input_sign",
+        "and the elevation's with",
+    ),
+    (lambda log: replace(log, u=np.concatenate([log.u[:1]] * 3 + [log.u[:-3]])), "late_output", "3 samples late"),
+    (lambda log: replace(log, u=np.concatenate([log.u[3:]] + [log.u[-1:]] * 3)), "early_output", "3 samples before"),
     (lambda log: replace(log, u=log.u * [1.0, -1.0]), "output_sign", "u_T_V with its sign turned"),
     (lambda log: replace(log, y=log.y * [1.0, -1.0]), "input_sign", "azimuth angle"),
     (lambda log: replace(log, u=log.u * 1000.0), "output_unit", "1000 times"),
@@ -51,8 +58,8 @@ TAMPERED = [
 ]
 
 
-@pytest.mark.parametrize(("tamper", "cause", "words"), sampled(TAMPERED, keep=TAMPERED[1:8:2]))
-def test_columns_that_are_exchanged_turned_scaled_or_dead_are_named(
+@pytest.mark.parametrize(("tamper", "cause", "words"), sampled(TAMPERED, keep=TAMPERED[2:11:2]))
+def test_columns_that_are_exchanged_turned_moved_scaled_or_dead_are_named(
     tamper: Callable[[RunLog], RunLog], cause: str, words: str
 ) -> None:
     found = _told(tamper(own()))
