@@ -175,7 +175,8 @@ def test_spikes_that_the_log_check_takes_for_others_are_not_laid_on_the_firmware
 ) -> None:
     """Truth: phi was read 5 counts off in 3 % of the rows, in three of four at one place; the true reading between them is left out for
     two of these."""
-    y, k = own().y.copy(), 700
+    log, k = rows_of(own(), np.arange(len(own().t_s)) < 900), 500
+    y = log.y.copy()
     off = np.zeros(y.shape)
     off[:, 1] = (np.random.default_rng(1).random(len(y)) < 0.03) * 5.0
     off[k - 8 : k + 12, 1] = 0.0
@@ -183,7 +184,7 @@ def test_spikes_that_the_log_check_takes_for_others_are_not_laid_on_the_firmware
     y += plant().plant.sensors["phi_rad"] * off
     unread = off != 0.0
     unread[k : k + 4, 1] = (False, False, True, True)
-    save_log(tmp_path / "spikes.csv", replace(own(), y=y))
+    save_log(tmp_path / "spikes.csv", replace(log, y=y))
     examine = verifying.examine
 
     def mistaken(*asked: Any, **how: Any) -> Integrity:
