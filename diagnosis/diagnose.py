@@ -17,7 +17,7 @@ from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.idle import shares_of, without_idle
 from diagnosis.decide.range_ends import range_ends, within_ranges
-from diagnosis.decide.rows import demand_rows, rows_in_doubt
+from diagnosis.decide.rows import OTHER_ROWS, demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Explanations, Weighed, chosen_of, first_share, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -25,6 +25,7 @@ from diagnosis.detect.detection import form_scores
 from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.nominal import plain_fit
+from diagnosis.hypothesis.case import Case
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.screening import alarmed, alone_of, beside_noise, detected_anew, seen_of
 from diagnosis.search.beam import Search, search, with_twins
@@ -139,8 +140,19 @@ def _told(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit)
     together = seen.case.with_flights([*seen.case.flights, *seen.checked.flights])
     told, rules = contradicting(together, seen.retuned.fit.hypothesis, [*material.names, *material.holdout_names])
     if told:
-        demand_wiring(seen.checked, plain_fit(seen.checked), plain_fit, "the hold-out", material.holdout_names)
+        told = (*told, *misplaced_held_out(seen.checked, material.holdout_names))
     return no_gap(seen.because(*rules), replace(material, notes=(*material.notes, *told)), holdout, reason)
+
+
+def misplaced_held_out(checked: Case, names: Sequence[str]) -> tuple[Note, ...]:
+    """What is to be told of columns of a hold-out that contradicts the logs to explain: that some may stand in other rows.
+
+    Raises BadInput where a column of it is turned, exchanged with another, or surely late.
+    """
+    own = plain_fit(checked)
+    demand_wiring(checked, own, plain_fit, "the hold-out", names)
+    notes = [note for note in demand_rows(checked, own, "the hold-out") if note.kind in OTHER_ROWS]
+    return tuple(replace(note, said=f"in {', '.join(names)} {note.said}") for note in notes)
 
 
 def _explained(seen: Seen) -> tuple[Seen, Search | None]:

@@ -14,7 +14,7 @@ from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.instants import happens
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
-from diagnosis.diagnose import Material, diagnose
+from diagnosis.diagnose import Material, diagnose, misplaced_held_out
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import plain_fit
@@ -80,6 +80,16 @@ def test_a_coarse_sensor_is_added_though_its_steps_make_no_prediction_better(pla
     logs = [fly(seed, coarse, rig_seed=55, air=False) for seed in (55, 56)]
     found = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None])).diagnosis
     assert found.found == ("psi_sensor.quantization",)
+
+
+def test_commands_of_the_hold_out_that_stand_late_are_told_with_its_name_and_rows() -> None:
+    """Truth: the arm as stated, its commands logged three rows late."""
+    log = arm_log(seed=52)
+    late = replace(log, u=np.concatenate([np.repeat(log.u[:1], 3, axis=0), log.u[:-3]]))
+    (note,) = misplaced_held_out(arm_case(late), ["hold"])
+    assert note.said is not None
+    assert note.said.startswith("in hold perhaps u_V stands three rows late in the log")
+    assert not misplaced_held_out(arm_case(log), ["hold"])
 
 
 # On an arm, which is fitted in a blink: a rub is what its rig has and its model lacks.
