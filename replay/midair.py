@@ -9,6 +9,7 @@ Known to the rounding of u only, the state cannot give equal bits: agreement is 
 """
 
 import math
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -29,16 +30,19 @@ def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, flo
     """Time from which the table's law, put into the state that the log tells, follows it, and within how many volt; else None.
 
     A law that agrees in its first sample began with the log; one that never is off by more than the bound did as well. Of a long log the
-    state is told anew now and then, as a law that integrates forgets no error of it. Where the law rests, later rows may tell it better.
+    state is told anew now and then, as a law that integrates forgets no error of it; so it is behind each row that lacks a reading. Where
+    the law rests, later rows may tell it better.
     """
     rows, setup = _telling_rows(shop.flight, table), Setup(table)
     at_rest_V = ReplayLaw(setup).outputs(shop.inputs(setup))
     off_V = np.abs(at_rest_V - shop.flight.logged_V).max(axis=1)
+    last = len(off_V) - thresholds.LEAST_ROWS
     if not rows.size or not off_V[0] > shop.flight.half_step_V[0].max():
         return None
     for later in range(thresholds.FIRST_TRIED):
         left = rows[rows >= rows[0] + later * thresholds.TRIED_LATER]
-        bound_V = _followed_within(shop, table, left, float(np.nanmax(off_V))) if left.size else None
+        whole = left.size and left[0] < last
+        bound_V = _followed_within(shop, table, left, float(np.nanmax(off_V))) if whole else None
         if bound_V is not None:
             return float(shop.flight.t_s[left[0]]), bound_V
     return None
@@ -53,8 +57,10 @@ def _followed_within(shop: Workshop, table: ControllerTable, rows: NDArray[np.in
     """Within how many volt the law follows the log from the first of the `rows` that tell its state; None where by no bound that a law
     from rest, which is off by `off_V`, clearly misses, nor where an input that moved rests from there on, as laws are alike then."""
     setup = Setup(table)
-    law, inputs, n = ReplayLaw(setup), shop.inputs(setup), len(shop.flight.t_s)
-    spans = [(row, min(behind + thresholds.HISTORY + 1, n)) for row, behind in pairwise([*_anew(rows), n])]
+    law, inputs = ReplayLaw(setup), shop.inputs(setup)
+    spans = list(_spans(rows, ~np.isfinite(shop.flight.angle_rad).all(axis=1)))
+    if sum(behind - row for row, behind in spans) < thresholds.LEAST_ROWS:
+        return None
     states = [_state(law, inputs, shop.flight, table, row) for row, _ in spans]
     wanted, slack = shop.answers(setup)
     whole_V, behind_V = (_way_V(shop.flight.logged_V[first:]) for first in (0, rows[0]))
@@ -69,6 +75,18 @@ def _followed_within(shop: Workshop, table: ControllerTable, rows: NDArray[np.in
     return None
 
 
+def _spans(rows: NDArray[np.int64], unread: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    """From which row to which the law is followed, from one of the `rows` that tell its state each time: none holds a row that lacks a
+    reading, of all n `unread`."""
+    n = len(unread)
+    while rows.size:
+        end = min(int(np.argmax(unread[rows[0] :])) + int(rows[0]), n) if unread[rows[0] :].any() else n
+        within = rows[(rows < end) & (rows < n - thresholds.LEAST_ROWS)]
+        starts = _anew(within) if within.size else [int(rows[0])]
+        yield from ((row, min(behind + thresholds.HISTORY + 1, end)) for row, behind in pairwise([*starts, end]))
+        rows = rows[rows > end]
+
+
 def _anew(rows: NDArray[np.int64]) -> list[int]:
     """The first of the rows that tell the state, and each first that is TOLD_ANEW rows and more behind the last of these."""
     found = [int(rows[0])]
@@ -78,17 +96,17 @@ def _anew(rows: NDArray[np.int64]) -> list[int]:
 
 
 def _telling_rows(flight: ReplayedLog, table: ControllerTable) -> NDArray[np.int64]:
-    """The rows before which references were known for SETTLED_CONSTANTS time constants, and HISTORY rows are whole and off the limits;
-    without the last LEAST_ROWS."""
+    """The rows before which references were known for SETTLED_CONSTANTS time constants, and HISTORY rows are whole and off the limits."""
     n = len(flight.t_s)
     longest_s = max(axis.prefilter_time_constant_s for axis in table.axes)
     settling = max(thresholds.HISTORY, int(np.ceil(thresholds.SETTLED_CONSTANTS * longest_s / table.sample_period_s)))
-    known = np.all(np.isfinite(flight.reference_rad) & np.isfinite(flight.angle_rad), axis=1)
+    known = np.isfinite(flight.reference_rad).all(axis=1)
     low = np.array([axis.u_min_V for axis in table.axes])
     high = np.array([axis.u_max_V for axis in table.axes])
     with np.errstate(invalid="ignore"):
         free = known & np.all((flight.logged_V > low) & (flight.logged_V < high), axis=1)
-    rows = np.arange(settling, max(settling, n - thresholds.LEAST_ROWS))
+    free &= np.isfinite(flight.angle_rad).all(axis=1)
+    rows = np.arange(settling, max(settling, n))
     return rows[(_run_before(known, settling)[rows]) & (_run_before(free, thresholds.HISTORY)[rows])]
 
 
@@ -101,8 +119,9 @@ def _run_before(marked: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
 
 
 def _state(law: ReplayLaw, inputs: NDArray[Any], flight: ReplayedLog, table: ControllerTable, row: int) -> Any:
-    """The state before `row`."""
+    """The state before `row`. The last difference of s is that of the law's own run, which is finer, unless it was misled on its way."""
     first, ahead_rad = row - thresholds.HISTORY, []
+    misled = not np.isfinite(flight.angle_rad[:row]).all()
     state = law.start(inputs[0, law.loops :])
     law.run(state, (0, first), inputs, None, None)
     for last in range(first, row):
@@ -112,8 +131,10 @@ def _state(law: ReplayLaw, inputs: NDArray[Any], flight: ReplayedLog, table: Con
         s_V = flight.logged_V[first:row, index] - [polynomial(axis.feedforward_V, angle) for angle in ahead_rad]
         own = state.axis[index]
         own.v_V = float(s_V[-1])
-        for power, value in enumerate(_differences(s_V, min(law.order, thresholds.HISTORY))):
-            own.s_V[power], own.w_V[power] = value, 0.0
+        for power, value in enumerate(_differences(s_V, min(law.order + misled, thresholds.HISTORY))):
+            own.s_V[power] = value
+            if power < law.order:
+                own.w_V[power] = 0.0
     return state
 
 

@@ -1,5 +1,6 @@
 """Each part of the firmware replay by itself, on flights whose firmware is known because it was made so."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -18,7 +19,7 @@ from replay.overflow import output_wrap
 from replay.prefilter import fitted_prefilters
 from replay.search import explain
 from replay.variants import grid_step, steps_in_words, variants
-from tests.law_tables import ce150_table
+from tests.law_tables import ce150_table, changed_axis
 from tests.replay.firmware_flights import Lossy, Wrapped, flown, rows_of, stale
 from verification.host_law import host_law
 
@@ -105,6 +106,18 @@ def test_a_log_cut_out_of_a_flight_is_told_to_begin_in_flight() -> None:
     found = begins_in_flight(Workshop(flight(late)), ce150_table())
     assert found is not None
     assert found[1] <= 1e-3  # V
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.003])
+def test_a_log_cut_out_of_a_flight_is_followed_between_rows_that_lack_a_reading(factor: float) -> None:
+    """Truth: the table's own law flew, or one whose elevation gains are 0.3 % larger; 5 % of the rows lack an angle."""
+    q = tuple(tuple(factor * value for value in row) for row in ce150_table().axes[0].q_V_rad)
+    log = healthy() if factor == 1.0 else flown(host_law(changed_axis(ce150_table(), "elevation", q_V_rad=q)))
+    late = rows_of(log, np.arange(300, len(log.t_s)))
+    y = np.where(np.random.default_rng(3).random(late.y.shape) < 0.025, np.nan, late.y)
+    found = begins_in_flight(Workshop(flight(replace(late, y=y))), ce150_table())
+    assert (found is not None) == (factor == 1.0)
+    assert found is None or found[1] <= 1e-4  # V
 
 
 def test_a_command_that_wraps_round_shows_the_range_of_its_integer() -> None:
