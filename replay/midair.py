@@ -58,7 +58,8 @@ def _followed_within(shop: Workshop, table: ControllerTable, rows: NDArray[np.in
     from rest, which is off by `off_V`, clearly misses, nor where an input that moved rests from there on, as laws are alike then."""
     setup = Setup(table)
     law, inputs = ReplayLaw(setup), shop.inputs(setup)
-    spans = list(_spans(rows, ~np.isfinite(shop.flight.angle_rad).all(axis=1)))
+    unread = np.any(np.isnan(shop.flight.angle_rad), axis=1)
+    spans = list(_spans(rows, unread))
     if sum(behind - row for row, behind in spans) < thresholds.LEAST_ROWS:
         return None
     states = [_state(law, inputs, shop.flight, table, row) for row, _ in spans]
@@ -100,12 +101,12 @@ def _telling_rows(flight: ReplayedLog, table: ControllerTable) -> NDArray[np.int
     n = len(flight.t_s)
     longest_s = max(axis.prefilter_time_constant_s for axis in table.axes)
     settling = max(thresholds.HISTORY, int(np.ceil(thresholds.SETTLED_CONSTANTS * longest_s / table.sample_period_s)))
-    known = np.isfinite(flight.reference_rad).all(axis=1)
+    known = np.all(np.isfinite(flight.reference_rad), axis=1)
     low = np.array([axis.u_min_V for axis in table.axes])
     high = np.array([axis.u_max_V for axis in table.axes])
     with np.errstate(invalid="ignore"):
         free = known & np.all((flight.logged_V > low) & (flight.logged_V < high), axis=1)
-    free &= np.isfinite(flight.angle_rad).all(axis=1)
+    free &= np.all(np.isfinite(flight.angle_rad), axis=1)
     rows = np.arange(settling, max(settling, n))
     return rows[(_run_before(known, settling)[rows]) & (_run_before(free, thresholds.HISTORY)[rows])]
 
