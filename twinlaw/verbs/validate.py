@@ -45,6 +45,8 @@ def run(chosen: argparse.Namespace) -> int:
         if not validation.passed:
             write_atomic(chosen.out / "validation.json", text)
             raise VerificationFailed("; ".join(validation.failures))
+        for note in validation.notes:  # now: a line that waits makes a flight of minutes
+            console.remark(note)
         flight = fly_board(bound, table, client)
     # Only now: a board that is lost in its flight has not been validated.
     write_atomic(chosen.out / "validation.json", text)
@@ -58,6 +60,4 @@ def run(chosen: argparse.Namespace) -> int:
     print(console.table(validation_rows(validation)))
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
-    for note in validation.notes:
-        print(f"\nnote: {note}")
     return 0
