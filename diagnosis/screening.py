@@ -11,7 +11,7 @@ from diagnosis.decisions import decided
 from diagnosis.detect.detection import detect
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.fit.between_rows import between_rows, with_commands
+from diagnosis.fit.between_rows import between_rows, held_beside, with_commands
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory, with_memory_from
@@ -63,24 +63,37 @@ def _detected(
 ) -> Seen:
     commands, nominal, between = between_rows(case, as_held)
     held = Held(case, as_held, between[0].value or 0.0) if nominal is not as_held else None
-    case, checked = with_commands(case, commands), None if checked is None else with_commands(checked, commands)
-    nominal = noisy(case, nominal)
-    seen = replace(scored(case, checked, nominal, between), held=held, beside=beside)
-    if not alarmed(seen.detection.p):
+    logs = case if held is None else with_commands(case, commands)
+    others = None if checked is None or held is None else with_commands(checked, commands)
+    seen, names = _screened(logs, others or checked, noisy(logs, nominal), between, beside)
+    if names is None or held is None:
         return seen
+    rule, as_logged = held_beside(case, commands, names.best)
+    if not as_logged:
+        return replace(seen, held=held).because(rule)
+    return _screened(case, checked, noisy(case, as_held), (*between, rule), beside)[0]
+
+
+def _screened(
+    case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...], beside: FittedHypothesis | None
+) -> tuple[Seen, FirstFits | None]:
+    """What the plant alone leaves to the library, and single effects beside it as they begin; None of these where there is no gap."""
+    seen = replace(scored(case, checked, nominal, rules), beside=beside)
+    if not alarmed(seen.detection.p):
+        return seen, None
     seen = replace(seen, still=_still(seen))
     names = _first_fits(seen.still or seen)
     best = names.best
-    again = plain_beside(case, best.fit, nominal)
+    again = plain_beside(seen.case, best.fit, nominal)
     if again is None:
-        return _with_names(seen, names)
-    gain = log_evidence(again, case.library.effects) - seen.retuned.evidence
+        return _with_names(seen, names), names
+    gain = log_evidence(again, seen.case.library.effects) - seen.retuned.evidence
     better = gain > decisions.TAKEN_IN
     outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)
     if not better:
-        return _with_names(seen, names).because(rule)
-    return replace(scored(case, checked, with_memory(case, again), (*between, rule)), held=held, beside=beside)
+        return _with_names(seen, names).because(rule), names
+    return replace(scored(case, checked, with_memory(case, again), (*rules, rule)), beside=beside), names
 
 
 def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:

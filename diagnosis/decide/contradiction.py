@@ -35,7 +35,8 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
     if len(case.flights) < 2:
         return None
     compiled = case.library.compiled(found.hypothesis.effects)
-    inside = [entry for entry in found.free if entry.effect in compiled.names and entry.log is None]
+    lacks = found.hypothesis.lacks
+    inside = [e for e in found.free if e.effect in compiled.names and e.log is None and e.effect not in lacks]
     places = [compiled.place(entry.effect, entry.parameter.symbol) for entry in inside]
     runs = passes(case, found.hypothesis, [*case.free.tolist(), *places])
     if runs is None:

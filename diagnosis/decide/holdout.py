@@ -61,8 +61,8 @@ class Holdout:
         return nominal.with_noise_of(self.base.fit.hypothesis)
 
     def foreseen(self, hypothesis: Hypothesis) -> Hypothesis:
-        """What a hypothesis says of these logs: an event that happened in another log counts only where it surely predicts these better,
-        and noise, which is not judged, is its own or that of `base`, whichever predicts better."""
+        """What a hypothesis says of these logs: an event that happened in another log, and what others are without, counts only where it
+        surely predicts these better, and noise, which is not judged, is its own or that of `base`, whichever predicts better."""
         if hypothesis not in self.ways:
             other = self.base.fit.hypothesis
             usual = self.logs.under_better_noise(self._without_events(hypothesis), other)
@@ -72,8 +72,8 @@ class Holdout:
         return self.ways[hypothesis]
 
     def _without_events(self, hypothesis: Hypothesis) -> Hypothesis:
-        effects = self.case.library.effects
-        kept = {name: values for name, values in hypothesis.effects.items() if not happens(effects[name], values)}
+        effects, lacks = self.case.library.effects, hypothesis.lacks
+        kept = {n: v for n, v in hypothesis.effects.items() if not happens(effects[n], v) and n not in lacks}
         return hypothesis if len(kept) == len(hypothesis.effects) else hypothesis.with_effects(kept)
 
     def errors_foreseen(self, hypothesis: Hypothesis) -> Errors:

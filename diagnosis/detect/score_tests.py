@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
+from diagnosis.detect.by_log import Part, part_of_finite, parts
 from diagnosis.detect.input_steps import Kind, likely_steps
 from diagnosis.detect.instants import instants
 from diagnosis.detect.linearisation import Linearisation, Scores
@@ -19,7 +20,7 @@ from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.library.coarse_grid import coarse_step
 from diagnosis.library.effect_library import EffectLibrary
 from jobs.thread_map import thread_map
-from sim.effect import Effect, Role, Values
+from sim.effect import Effect, EffectParameter, Role, Values
 
 Array = NDArray[np.float64]
 # Where the search of a limit begins: the level below which the command stays for these shares of the time, as a peak may be a kick of a
@@ -30,11 +31,20 @@ MOST_STARTS = 8  # of an effect's shapes that are scored: time
 FARTHEST_SIZE = 30.0  # references: no larger size is proposed
 
 
+@dataclass(frozen=True)
+class Start:
+    """Values from where a fit may begin, and the logs, by number, that deny the effect."""
+
+    values: Values
+    denied: frozenset[int] = frozenset()
+
+
 @dataclass(frozen=True, eq=False)
 class ScoreTest:
     """An effect with values to start a fit from: `z` its efficient score in standard deviations, `gain` of the log likelihood to first
     order, `absorbed` the share of its signature that the plant's coefficients imitate, `power` the score that its reference size
-    would have. `others` are further values that promise nearly as much, from which a fit may end on another hill."""
+    would have. `denied` are the numbers of logs that show nothing of it where others do, `others` further starts that promise nearly
+    as much, from which a fit may end on another hill."""
 
     effect: str
     values: Values
@@ -42,7 +52,13 @@ class ScoreTest:
     gain: float
     absorbed: float
     power: float
-    others: tuple[Values, ...] = ()
+    denied: frozenset[int] = frozenset()
+    others: tuple[Start, ...] = ()
+
+    @property
+    def starts(self) -> tuple[Start, ...]:
+        """All from where its fit may begin, the most promising first."""
+        return (Start(self.values, self.denied), *self.others)
 
 
 def score_effects(
@@ -113,7 +129,9 @@ def _best(found: Iterable[ScoreTest]) -> ScoreTest:
     """The best of one effect's, with the others that promise enough: by first order nobody knows which shape's hill is the highest."""
     best, *others = sorted(found, key=lambda entry: -entry.gain)
     least = max(decisions.PROMISED_SHARE * best.gain, float(decisions.TAKEN_IN))
-    return replace(best, others=tuple(o.values for o in others[: decisions.NEXT - 1] if o.gain > least))
+    return replace(
+        best, others=tuple(Start(o.values, o.denied) for o in others[: decisions.NEXT - 1] if o.gain > least)
+    )
 
 
 def _is_sought(effect: Effect) -> bool:
@@ -140,7 +158,30 @@ def _judged(
     """Score tests from a pass whose columns are one effect's size each."""
     scale = np.array([size_scale(case.library.effects[name].size) for name in values])
     columns = np.concatenate([flat_slopes(run) for run in runs]) * scale
-    return _score_tests(case, values, linearisation.scores_of(columns), scale)
+    found = _score_tests(case, values, linearisation.scores_of(columns), scale)
+    return found + _in_some_logs(case, linearisation, found, columns[:, [list(values).index(e.effect) for e in found]])
+
+
+def _in_some_logs(
+    case: Case, linearisation: Linearisation, found: Sequence[ScoreTest], columns: Array
+) -> list[ScoreTest]:
+    """The same tests of effects that some logs show and others deny, from a column (rows, k) of each in units of its size."""
+    sizes = [case.library.effects[entry.effect].size for entry in found]
+    of_logs = parts(linearisation, columns, [entry.gain for entry in found], [_limits(size) for size in sizes])
+    return [_in_part(case, entry, part) for entry, part in zip(found, of_logs, strict=True) if part is not None]
+
+
+def _limits(size: EffectParameter) -> tuple[float, float]:
+    """How small and how large a size is proposed, in its unit from where it vanishes."""
+    zero, unit = size.zero or 0.0, size_scale(size)
+    least, most = (size.lower - zero) / unit, (size.upper - zero) / unit
+    return max(least, -FARTHEST_SIZE), min(most, FARTHEST_SIZE)
+
+
+def _in_part(case: Case, entry: ScoreTest, part: Part) -> ScoreTest:
+    size = case.library.effects[entry.effect].size
+    values = {**entry.values, size.symbol: (size.zero or 0.0) + part.size * size_scale(size)}
+    return replace(entry, values=values, gain=part.gain, z=float(np.sqrt(2.0 * part.gain)), denied=part.denied)
 
 
 def _score_tests(case: Case, values: Mapping[str, Values], scores: Scores, units: Array) -> list[ScoreTest]:
@@ -174,8 +215,9 @@ def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str])
         small = {**effect.absent, effect.size.symbol: (effect.size.zero or 0.0) + SMALL_SIZE * unit}
         runs = passes(case, hypothesis.with_effects({**hypothesis.effects, name: small}))
         if runs is not None:
-            scores = linearisation.scores_of(((stacked(runs) - linearisation.w) / SMALL_SIZE)[:, None])
-            found += _score_tests(case, {name: small}, scores, np.array([unit]))
+            column = ((stacked(runs) - linearisation.w) / SMALL_SIZE)[:, None]
+            own = _score_tests(case, {name: small}, linearisation.scores_of(column), np.array([unit]))
+            found += [*own, *(_in_some_logs(case, linearisation, own, column) if own else [])]
     return found
 
 
@@ -259,4 +301,6 @@ def _tried(case: Case, linearisation: Linearisation, effect: Effect, values: Val
     further, absorbed = linearisation.further(change)
     gain = likelihood(runs) - linearisation.fit.log_likelihood + further
     power = float(np.sqrt(max(size * (1.0 - absorbed), 0.0)))
-    return ScoreTest(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power)
+    part = part_of_finite(case, linearisation.runs, runs, gain)
+    gain, denied = (gain, frozenset[int]()) if part is None else (part.gain, part.denied)
+    return ScoreTest(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power, denied)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.detect.by_log import with_start
 from diagnosis.detect.forward import LEFT, forward, without
 from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.score_tests import ScoreTest
@@ -39,7 +40,7 @@ def unlike(linearisation: Linearisation, score_tests: Sequence[ScoreTest], count
 
 def change(linearisation: Linearisation, proposed: ScoreTest) -> Array:
     """The change of the whitened innovations (rows,) by an effect as it is proposed; 0 where the filter fails by it."""
-    hypothesis = linearisation.fit.hypothesis
-    with_it = hypothesis.with_effects({**hypothesis.effects, proposed.effect: proposed.values})
-    runs = passes(linearisation.case, with_it)
+    case = linearisation.case
+    effect = case.library.effects[proposed.effect]
+    runs = passes(case, with_start(case, linearisation.fit.hypothesis, effect, proposed.values, proposed.denied))
     return np.zeros_like(linearisation.w) if runs is None else stacked(runs) - linearisation.w

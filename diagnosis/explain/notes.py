@@ -24,6 +24,7 @@ def notes_of(
         *_restless(case, chosen),
         *_moved(case, chosen),
         *_own_events(case, chosen),
+        *_in_some_logs(case, chosen),
         *_twins(case, weighed),
         *_imitated(score_tests, chosen),
         *_unseen(case, score_tests, chosen),
@@ -87,6 +88,14 @@ def _own_events(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
             if log != ELSEWHERE and values[size.symbol] != size.zero
         }
         yield Note("own_events", name, {"symbol": size.symbol, "logs": logs})
+
+
+def _in_some_logs(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
+    """Which logs show an effect and which deny it, where they differ."""
+    for name, lack in chosen.fit.hypothesis.lacks.items():
+        numbers = [flight.number for flight in case.flights]
+        shown, denied = ([f"log {n + 1}" for n in numbers if (n in lack.logs) is here] for here in (False, True))
+        yield Note("in_some_logs", name, {"shown": shown, "denied": denied})
 
 
 def _twins(case: Case, weighed: Weighed | None) -> Iterator[Note]:

@@ -145,6 +145,11 @@ def _own_events(note: Note) -> str:
     return f"{note.subject} happens at another instant in each log: {'; '.join(told)}"
 
 
+def _in_some_logs(note: Note) -> str:
+    shown, denied = (" and ".join(note.numbers[key]) for key in ("shown", "denied"))
+    return f"{note.subject} acts in {shown} alone: the rig of {denied} is without, as one that was changed between them"
+
+
 def _stated_predicts_better(note: Note) -> str:
     further = 100.0 * note.numbers["worse"]
     return (
@@ -183,6 +188,7 @@ _SENTENCES: Mapping[str, Callable[[Note], str]] = {
     "predicts_worse": _predicts_worse,
     "unsure": _unsure,
     "own_events": _own_events,
+    "in_some_logs": _in_some_logs,
     "another_plant": _another_plant,
     "something_else_missing": _something_else_missing,
     "stated_predicts_better": _stated_predicts_better,

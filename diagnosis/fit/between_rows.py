@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decisions import decided
+from diagnosis.decisions import decided, held_against
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import NOMINAL_ROUNDS, gain_over, settled
 from diagnosis.hypothesis.case import Case, FilteredLog
@@ -39,6 +40,20 @@ def between_rows(case: Case, held: Fit) -> tuple[tuple[float, ...], Fit, tuple[D
     told = " and ".join("ever new" if np.isinf(count) else f"{count:g}" for count in commands)
     rule = decided("between_rows", "inputs", gain, decisions.TAKEN_IN, f"{told} commands a row" if better else "held")
     return (commands, found, (rule,)) if better else (none, held, (rule,))
+
+
+def held_beside(case: Case, commands: tuple[float, ...], best: FittedHypothesis) -> tuple[Decision, bool]:
+    """Whether inputs were held after all, beside what explains most: without it a lag or friction passes for inputs that move. The
+    record of that is by how much `commands` a row are likelier beside it."""
+    hypothesis = best.fit.hypothesis
+    found = [fit(logs, hypothesis, rounds=NOMINAL_ROUNDS) for logs in (case, with_commands(case, commands))]
+    held, moved = (-np.inf if entry is None else entry.log_posterior for entry in found)
+    gain = float(moved - held) if np.isfinite(held) else np.inf
+    as_logged = gain <= 0.0
+    rule = held_against(
+        "between_rows_beside", " + ".join(best.effects), gain, 0.0, "nats", "held" if as_logged else "as before"
+    )
+    return rule, as_logged
 
 
 def _sought(case: Case, none: tuple[float, ...], held: Fit) -> tuple[float, ...]:

@@ -27,7 +27,7 @@ class FittedHypothesis:
 
 def log_evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     """Log evidence by Laplace's method, with theta normal and sizes SIZE_SD times their reference; each shape costs SHAPE_COST, whatever
-    the logs tell of it: one of which they tell nothing makes nothing likelier.
+    the logs tell of it: one of which they tell nothing makes nothing likelier. Which logs an effect is not in costs what that choice does.
 
     `effects` is the plant's library.
     """
@@ -40,6 +40,7 @@ def log_evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     prior -= WAVES_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
     rough = [p.is_size for effect in carried for p in effect.parameters if p.rough]
     prior -= sum(STEPS_COST if is_size else decisions.SHAPE_COST for is_size in rough)
+    prior -= sum(lack.cost for lack in found.hypothesis.lacks.values())
     prior -= decisions.TAKEN_IN * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in carried))
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior
 

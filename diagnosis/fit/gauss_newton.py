@@ -5,7 +5,7 @@ is fitted, and each point costs a filter's pass over all logs. So steps begin un
 falls, and end where one gains or promises less than LEAST_STEP_GAIN nats, which no sum of squares counts in.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
 from diagnosis.hypothesis.case import Case, FilteredLog
-from diagnosis.hypothesis.hypothesis import ELSEWHERE, SHORTEST_LAG_S, Hypothesis, nominal_hypothesis, passes
+from diagnosis.hypothesis.hypothesis import ELSEWHERE, SHORTEST_LAG_S, Hypothesis, Lack, nominal_hypothesis, passes
 from diagnosis.library.effect_library import CompiledFilter
 from diagnosis.library.input_effects import share_slopes
 from sim.effect import EffectParameter, Role, Values
@@ -51,13 +51,14 @@ class Free:
 
 
 class _Columns:
-    """Which columns of a pass are the slopes by which of the fitted numbers: theta first, then those of `free` that the equations hold.
+    """Which columns of a pass are the slopes by which of the fitted numbers: theta first, then those of `free` that the equations hold; of
+    what a log lacks it tells nothing.
 
     `places` are the pass' columns as places in p; a number that each log has for itself takes the same column in all of them.
     """
 
-    def __init__(self, case: Case, compiled: CompiledFilter, free: Sequence[Free]) -> None:
-        self._count, self._free = len(case.free), free
+    def __init__(self, case: Case, compiled: CompiledFilter, free: Sequence[Free], lacks: Mapping[str, Lack]) -> None:
+        self._count, self._free, self._lacks = len(case.free), free, lacks
         inside = [(row, entry) for row, entry in enumerate(free, self._count) if entry.effect in compiled.names]
         own = {row: compiled.place(entry.effect, entry.parameter.symbol) for row, entry in inside}
         further = list(dict.fromkeys(own.values()))
@@ -68,9 +69,13 @@ class _Columns:
     def of(self, log: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The numbers that a log tells of, and the column of each in its pass."""
         rows = [
-            row for row in self.rows.tolist() if row < self._count or self._free[row - self._count].log in (None, log)
+            row for row in self.rows.tolist() if row < self._count or self._tells(self._free[row - self._count], log)
         ]
         return np.array(rows, dtype=int), np.array([self._column.get(row, row) for row in rows], dtype=int)
+
+    def _tells(self, entry: Free, log: int) -> bool:
+        lack = self._lacks.get(entry.effect)
+        return entry.log in (None, log) and (lack is None or log not in lack.logs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,7 +227,7 @@ def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: f
     """Likelihood and linear problem at a point; None where the filter or its slopes fail, or it is no likelier than `least`."""
     compiled = case.library.compiled(hypothesis.effects)
     inside = np.array([entry.effect in compiled.names for entry in free], dtype=bool)
-    columns = _Columns(case, compiled, free)
+    columns = _Columns(case, compiled, free, hypothesis.lacks)
     runs = passes(case, hypothesis, columns.places, slopes=not inside.all())
     if runs is None:
         return None

@@ -27,6 +27,16 @@ START_SD = 0.05  # of states that effects brought, in their own units
 ELSEWHERE = -1  # instead of a log's number: all logs that have no values of their own
 
 
+@dataclass(frozen=True)
+class Lack:
+    """Logs, by number, that are without an effect which others show, and the effect's values of no size; `cost` is what the choice of them
+    costs, in nats."""
+
+    logs: frozenset[int]
+    absent: Values
+    cost: float
+
+
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
     """Steps `theta` (free,) of the plant's uncertain coefficients in standard deviations, `effects` with their values by symbol, and
@@ -36,7 +46,7 @@ class Hypothesis:
     what drives it is judged apart from what it drives. `rest_doubt` is log10 of how long, in s, dry friction is in doubt where an axis
     comes to rest or leaves it, `reading_noise` the errors of readings that are alike from row to row, by output: noise as the others.
     `own`: what happens at another instant and by another size in each log has values by the log's number, and by ELSEWHERE those of all
-    other logs; in `effects` it has those of the first in which it happens.
+    other logs; in `effects` it has those of the first in which it happens. `lacks`: what a rig had in some logs alone, by effect.
     """
 
     theta: Array
@@ -46,6 +56,7 @@ class Hypothesis:
     rest_doubt: float = FIRST_REST_DOUBT
     reading_noise: Mapping[str, ReadingNoise] = field(default_factory=dict)
     state_noise: Mapping[str, float] = field(default_factory=dict)
+    lacks: Mapping[str, Lack] = field(default_factory=dict)
 
     def with_noise_of(self, other: "Hypothesis") -> "Hypothesis":
         """The same with all noise that another supposes."""
@@ -60,14 +71,18 @@ class Hypothesis:
     def with_effects(self, effects: Mapping[str, Values]) -> "Hypothesis":
         """The same with other effects."""
         own = {name: values for name, values in self.own.items() if effects.get(name) is self.effects.get(name)}
-        return replace(self, effects=effects, own=own)
+        lacks = {name: lack for name, lack in self.lacks.items() if name in effects}
+        return replace(self, effects=effects, own=own, lacks=lacks)
+
+    def lacking(self, effect: str, lack: Lack | None) -> "Hypothesis":
+        """The same with an effect that some logs are without; None: that all have."""
+        return self if lack is None else replace(self, lacks={**self.lacks, effect: lack})
 
     def over(self, flight: FilteredLog) -> "Hypothesis":
         """What it supposes of one log."""
-        if not self.own:
-            return self
         here = {name: values.get(flight.number, values[ELSEWHERE]) for name, values in self.own.items()}
-        return replace(self, effects={**self.effects, **here}, own={})
+        here |= {name: lack.absent for name, lack in self.lacks.items() if flight.number in lack.logs}
+        return replace(self, effects={**self.effects, **here}, own={}, lacks={}) if here else self
 
     def value(self, effect: str, symbol: str, log: int | None = None) -> float:
         """A number of an effect, that of one log where it has its own."""

@@ -2,6 +2,7 @@
 the rest fits."""
 
 from collections.abc import Mapping, Sequence, Set
+from dataclasses import replace
 
 import numpy as np
 
@@ -85,10 +86,13 @@ def _twins_begun(
     rest = frozenset(first.effects) - {name}
     wanted = {twin for twin in twins_of(case, name) if not _is_near(found.get(rest | {twin}), first)}
     promised = {job.score_test.effect: job for job in _instead(case, first, name, wanted)}
-    starts = []
+    lack, starts = first.fit.hypothesis.lacks.get(name), []
     for twin in sorted(wanted):
-        begun = [promised[twin].begun] if twin in promised else []
+        begun = [promised[twin].begun(case)] if twin in promised else []
         begun += _of_its_size(case, first, name, twin, begun)
+        begun = [
+            start.lacking(twin, lack and replace(lack, absent=case.library.effects[twin].absent)) for start in begun
+        ]
         starts += [likeliest(case, begun)] if begun else []
     return [start for start, value in starts if value > -np.inf]
 
@@ -138,7 +142,7 @@ def _exchanged(
 ) -> FittedHypothesis | None:
     """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
     jobs = [job for jobs in thread_map(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
-    fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job.begun), jobs) if entry]
+    fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job.begun(case)), jobs) if entry]
     keep_better(found, fitted)
     first = max((entry.evidence for entry in fitted), default=-np.inf)
     near = [entry for entry in fitted if entry.evidence > max(first, best.evidence) - decisions.PLAIN_TO_SEE]

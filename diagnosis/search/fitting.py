@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
+from diagnosis.detect.by_log import with_start
 from diagnosis.detect.score_tests import ScoreTest, holding
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
@@ -17,7 +18,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise
 from diagnosis.search.rough_numbers import POLISHING, STEP_FINELY, is_rough, likeliest_size, polished
-from sim.effect import Role, Values
+from sim.effect import Role
 
 Array = NDArray[np.float64]
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
@@ -37,24 +38,22 @@ class Job:
     start: Fit
     score_test: ScoreTest
 
-    @property
-    def begun(self) -> Hypothesis:
+    def begun(self, case: Case) -> Hypothesis:
         """Where its fit begins."""
-        return self._at(self.score_test.values)
+        return self.all_begun(case)[0]
 
-    @property
-    def all_begun(self) -> list[Hypothesis]:
-        """Where else it may begin too, the most promising first."""
-        return [self._at(values) for values in (self.score_test.values, *self.score_test.others)]
-
-    def _at(self, values: Values) -> Hypothesis:
-        hypothesis = self.start.hypothesis
-        return hypothesis.with_effects({**hypothesis.effects, self.score_test.effect: values})
+    def all_begun(self, case: Case) -> list[Hypothesis]:
+        """Where it may begin, the most promising first."""
+        effect = case.library.effects[self.score_test.effect]
+        return [
+            with_start(case, self.start.hypothesis, effect, start.values, start.denied)
+            for start in self.score_test.starts
+        ]
 
 
 def rough(case: Case, job: Job) -> FittedHypothesis | None:
     """A first joint fit, under the process noise that was there before, the better one where it may begin at several values."""
-    found = [_rough(case, job, start) for start in job.all_begun]
+    found = [_rough(case, job, start) for start in job.all_begun(case)]
     return max((entry for entry in found if entry), key=lambda entry: entry.evidence, default=None)
 
 
@@ -62,12 +61,12 @@ def _rough(case: Case, job: Job, start: Hypothesis) -> FittedHypothesis | None:
     entry = job.score_test
     if is_rough(case, entry.effect):
         start = polished(case, start, entry.effect, POLISHING)
-    begun = _from_stated(case, start) if is_astray(start, decisions.ASTRAY) else None
-    found = begun or fit(case, start, rounds=4)
+    stated = _from_stated(case, start) if is_astray(start, decisions.ASTRAY) else None
+    found = stated or fit(case, start, rounds=4)
     if found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
-    if begun is None and (found is None or is_astray(found.hypothesis, decisions.ASTRAY)):
+    if stated is None and (found is None or is_astray(found.hypothesis, decisions.ASTRAY)):
         found = _likelier(found, _from_stated(case, start))
     if found is not None and holding(case.library, [entry.effect]):
         found = _at_its_level(case, found, entry.effect)

@@ -27,11 +27,11 @@ class Asked:
 
 
 def rows(log: RunLog, chosen: slice) -> RunLog:
-    """Some rows of a log, as a log of its own that begins at 0."""
-    t_s, step = log.t_s[chosen], chosen.step or 1
+    """Some rows of a log, with the times that they had, as a log of its own."""
+    step = chosen.step or 1
     return replace(
         log,
-        t_s=t_s - t_s[0],
+        t_s=log.t_s[chosen],
         u=log.u[chosen],
         y=log.y[chosen],
         extra={name: values[chosen] for name, values in log.extra.items()},

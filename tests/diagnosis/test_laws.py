@@ -62,6 +62,18 @@ def test_a_hold_out_of_the_same_rig_changes_no_verdict(plainly: Callable[[str], 
     assert [e.effect for e in before.diagnosis.effects[:1]] == [e.effect for e in after.diagnosis.effects[:1]]
 
 
+@pytest.mark.parametrize(("rig", "count"), sampled([(rig, n) for rig in ("rubs", "lags") for n in (1, 2)], keep=[]))
+def test_logs_of_the_plain_rig_take_no_name_away(
+    plainly: Callable[[str], tuple[Logs, Result]], rig: str, count: int
+) -> None:
+    # Truth: the rig had the effect in its first two logs, and was without in those that are added.
+    logs, before = plainly(rig)
+    after = answered([*logs, *(arm_log(RIGS["as stated"], seed=75 + number, rows=4) for number in range(count))])
+    assert differs(before, after) == ""
+    (told,) = (note for note in after.diagnosis.note_records if note.kind == "in_some_logs")
+    assert told.numbers["shown"] == ["log 1", "log 2"]
+
+
 @pytest.mark.soak
 def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     logs = [arm_log(RIGS["rubs"], seed=71, seconds=8.0)]
