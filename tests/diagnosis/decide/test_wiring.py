@@ -150,22 +150,18 @@ def test_the_sign_of_an_input_that_the_plant_answers_alike_either_way_is_said_to
     assert [note.kind for note in demand_wiring(case, nominal, plain_fit, "the log", ["log"])] == ["sign_unseen"]
 
 
-def test_the_longer_a_log_the_surer_is_its_turned_sign() -> None:
-    """Truth: as recorded no column is doubted; with the torque's sign turned the plant as stated follows the first 0.6 s 38 nats worse, all
-    of them 60, which are enough to refuse them."""
+def test_a_turned_sign_that_is_likelier_but_not_surely_is_told() -> None:
+    """Truth: as recorded no column is doubted; with the torque's sign turned the plant as stated follows 33 nats worse."""
     library, log = effect_library(bound("torque_limited_pendulum")), recorded("torque_limited_pendulum", "sac")
 
     def told(log: RunLog) -> list[str]:
         case = make_case(library, [log])
         return [str(note.said) for note in demand_wiring(case, plain_fit(case), plain_fit, "the log", ["log"])]
 
-    begin = rows_of(log, log.t_s < 0.6)
-    assert told(begin) == told(log) == []
-    (said,) = told(turned(begin, "u", 0))
+    assert told(log) == []
+    (said,) = told(turned(log, "u", 0))
     assert said.startswith("perhaps ")
     assert "tau_Nm has the wrong sign" in said
-    with pytest.raises(BadInput, match="tau_Nm has the wrong sign"):
-        told(turned(log, "u", 0))
 
 
 @pytest.mark.soak

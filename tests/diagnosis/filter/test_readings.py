@@ -40,6 +40,14 @@ def test_noise_that_moves_a_count_leaves_its_rounding(noise_steps: float) -> Non
     assert 0.5 < np.mean(errors**2) / np.mean(told) < 2.0
 
 
+@pytest.mark.parametrize(("noise_steps", "least"), [(0.1, 0.5), (0.2, 0.5), (0.4, 0.0)])
+def test_noise_before_a_rounding_dithers_it(noise_steps: float, least: float) -> None:
+    # Truth: near an edge counts that noise moves to and fro tell where the axis is, between edges a count that stands tells its step. What
+    # readings say of their own variance is the mean square of their errors to a factor of two; of more noise they say less than they could.
+    errors, told = at_rest(noise_steps, rounded=False)
+    assert least < np.mean(errors**2) / np.mean(told) < 2.0
+
+
 def test_noise_of_several_steps_makes_rounding_new_with_each_reading() -> None:
     # Truth: the mean of n readings under white noise of two steps is as sure as 4 steps^2 / n.
     errors, told = at_rest(2.0, rounded=False)
