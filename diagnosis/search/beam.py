@@ -16,7 +16,7 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink
-from diagnosis.search.fitting import Job, is_astray, keep_better, once_more, refined, rough
+from diagnosis.search.fitting import Job, in_all_logs, is_astray, keep_better, once_more, refined, rough
 from diagnosis.search.noise_beside import with_noise_beside, with_noise_of
 from diagnosis.search.own_events import with_own_events
 from jobs.thread_map import thread_map
@@ -223,7 +223,7 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     best = [entry for entry in best if entry.evidence > least_near(best[0], nominal)]
     twins = [entry for entry in best if is_twin(case, entry, best[0])]
     asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.NEXT], *twins])]
-    for step in (refined, once_more, with_own_events):
+    for step in (refined, in_all_logs, once_more, with_own_events):
         ends = thread_map(lambda names, step=step: step(case, found[names]), asked)
         keep_better(found, [end for end in ends if end is not None])
     keep_better(found, with_noise_beside(case, [entry for entry in found.values() if _certain(entry, found)], nominal))
@@ -312,6 +312,7 @@ def _end(
     best, first = max(entry.evidence for entry in begun), known.evidence
     good = [entry for entry in begun if entry.evidence - first >= decisions.PROMISED_SHARE * (best - first)]
     ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
+    ends = thread_map(lambda fitted: in_all_logs(case, fitted), ends)
     done = sorted(ends, key=lambda entry: -entry.evidence)
     found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})
     strayed = [e for e in done[: decisions.NEXT] if is_astray(e.fit.hypothesis, decisions.ASTRAY)]
