@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,6 +16,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, Lack
 from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]
+Limits = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -41,38 +42,37 @@ def with_start(
     return with_it.lacking(effect.name, Lack(denied, effect.absent, choice_cost(case)) if denied else None)
 
 
-Limits = tuple[float, float]
-
-
 def parts(
     linearisation: Linearisation, columns: Array, gains: Sequence[float], limits: Sequence[Limits]
 ) -> list[Part | None]:
     """For each of the columns (rows, k), slopes by a size within `limits` that gains `gains` in all logs, those in which it gains most,
     by first order: None where that is not TAKEN_IN nats more than in all."""
-    flights = linearisation.case.flights
-    if len(flights) < 2:
+    case = linearisation.case
+    if len(case.flights) < 2:
         return [None] * columns.shape[1]
-    sizes = [run.w.size for run in linearisation.runs]
-    bounds = np.cumsum([0, *sizes])
-    spans = [slice(first, last) for first, last in pairwise(bounds.tolist())]
-    pull = linearisation.slopes.T @ linearisation.w
-    cross = np.stack([linearisation.slopes[span].T @ columns[span] for span in spans])  # (logs, free, k)
-    share = np.einsum("ij,ljk->lik", linearisation.solve, cross)
-    score = np.stack([-(columns[span].T @ linearisation.w[span]) for span in spans]) + np.einsum(
-        "lik,i->lk", share, pull
-    )
-    gram = -np.einsum("lik,mik->klm", cross, share)
-    gram[:, np.arange(len(spans)), np.arange(len(spans))] += np.stack(
-        [(columns[span] ** 2).sum(axis=0) for span in spans]
-    ).T
-    numbers = [flight.number for flight in flights]
-    least = float(decisions.TAKEN_IN)
-    found = [_best_part(g, G, within, numbers) for g, G, within in zip(score.T, gram, limits, strict=True)]
-    cost = choice_cost(linearisation.case)
+    score, gram = _scores_by_log(linearisation, columns)
+    numbers, cost = [flight.number for flight in case.flights], choice_cost(case)
+    found = [_best_part(g, G, within, numbers) for g, G, within in zip(score, gram, limits, strict=True)]
+    paid = [None if part is None else replace(part, gain=part.gain - cost) for part in found]
     return [
-        Part(part.denied, part.size, part.gain - cost) if part and part.gain - cost > gain + least else None
-        for part, gain in zip(found, gains, strict=True)
+        part if part is not None and part.gain > gain + decisions.TAKEN_IN else None
+        for part, gain in zip(paid, gains, strict=True)
     ]
+
+
+def _scores_by_log(linearisation: Linearisation, columns: Array) -> tuple[Array, Array]:
+    """Of each column (rows, k) the scores of the parts that are one log each (k, logs), and their products (k, logs, logs), the plant's
+    coefficients taken out."""
+    ends = np.cumsum([run.w.size for run in linearisation.runs])
+    spans = [slice(first, last) for first, last in pairwise([0, *ends.tolist()])]
+    slopes, w, logs = linearisation.slopes, linearisation.w, np.arange(len(spans))
+    cross = np.stack([slopes[span].T @ columns[span] for span in spans])  # (logs, free, k)
+    share = np.einsum("ij,ljk->lik", linearisation.solve, cross)
+    own = np.stack([-(columns[span].T @ w[span]) for span in spans])
+    score = own + np.einsum("lik,i->lk", share, slopes.T @ w)
+    gram = -np.einsum("lik,mik->klm", cross, share)
+    gram[:, logs, logs] += np.stack([(columns[span] ** 2).sum(axis=0) for span in spans], axis=1)
+    return score.T, gram
 
 
 def _best_part(score: Array, gram: Array, within: Limits, numbers: Sequence[int]) -> Part | None:

@@ -165,10 +165,12 @@ def _judged(
 def _in_some_logs(
     case: Case, linearisation: Linearisation, found: Sequence[ScoreTest], columns: Array
 ) -> list[ScoreTest]:
-    """The same tests of effects that some logs show and others deny, from a column (rows, k) of each in units of its size."""
-    sizes = [case.library.effects[entry.effect].size for entry in found]
-    of_logs = parts(linearisation, columns, [entry.gain for entry in found], [_limits(size) for size in sizes])
-    return [_in_part(case, entry, part) for entry, part in zip(found, of_logs, strict=True) if part is not None]
+    """The same tests of effects that some logs show and others deny, from a column (rows, k) of each in units of its size. An event is in a
+    log of its own anyway (search/own_events.py)."""
+    effects = [case.library.effects[entry.effect] for entry in found]
+    gains, limits = [entry.gain for entry in found], [_limits(effect.size) for effect in effects]
+    of_logs = zip(found, effects, parts(linearisation, columns, gains, limits), strict=True)
+    return [_in_part(entry, effect.size, part) for entry, effect, part in of_logs if part and not effect.is_event]
 
 
 def _limits(size: EffectParameter) -> tuple[float, float]:
@@ -178,8 +180,7 @@ def _limits(size: EffectParameter) -> tuple[float, float]:
     return max(least, -FARTHEST_SIZE), min(most, FARTHEST_SIZE)
 
 
-def _in_part(case: Case, entry: ScoreTest, part: Part) -> ScoreTest:
-    size = case.library.effects[entry.effect].size
+def _in_part(entry: ScoreTest, size: EffectParameter, part: Part) -> ScoreTest:
     values = {**entry.values, size.symbol: (size.zero or 0.0) + part.size * size_scale(size)}
     return replace(entry, values=values, gain=part.gain, z=float(np.sqrt(2.0 * part.gain)), denied=part.denied)
 
@@ -301,6 +302,6 @@ def _tried(case: Case, linearisation: Linearisation, effect: Effect, values: Val
     further, absorbed = linearisation.further(change)
     gain = likelihood(runs) - linearisation.fit.log_likelihood + further
     power = float(np.sqrt(max(size * (1.0 - absorbed), 0.0)))
-    part = part_of_finite(case, linearisation.runs, runs, gain)
+    part = None if effect.is_event else part_of_finite(case, linearisation.runs, runs, gain)
     gain, denied = (gain, frozenset[int]()) if part is None else (part.gain, part.denied)
     return ScoreTest(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power, denied)
