@@ -84,8 +84,10 @@ def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     assert after.diagnosis.false_alarm_probability == before.diagnosis.false_alarm_probability
 
 
-# Single effects of two floors and more on rigs that the diagnosis' makers did not write.
-SEALED = {"first": 14, "second": 3}
+# Single effects of two floors and more on rigs that the diagnosis' makers did not write. Rows are left out of none: what a controller
+# commanded in these is not known then, as the log check says.
+SEALED = {"first": 14, "second": 3, "real": 5}
+OF_ALL_ROWS = [law for law in LAWS if "row" not in law]
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +107,7 @@ def sealed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 @pytest.mark.soak
 @pytest.mark.parametrize("family", SEALED)
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", OF_ALL_ROWS)
 def test_a_sealed_case_asked_otherwise_is_answered_alike(sealed: Callable[[str], Path], family: str, law: str) -> None:
     folder = sealed(family)
     bound, material = read_material(folder / "plant.toml", sorted(folder.glob("train-*.csv")), [])

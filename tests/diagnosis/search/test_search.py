@@ -181,18 +181,18 @@ def test_an_effect_that_parameters_imitate_in_part_is_fitted_without_going_astra
 
 
 def test_a_mode_between_two_starts_is_found_from_the_better_hill() -> None:
-    # Truth: a springy part of 28.4 rad/s. By first order a mode of 25 rad/s is the likeliest, and a fit from there ends on a lower
-    # hill, 294 nats below that from 40 rad/s. A fit from the truth itself ends no higher than what is found.
-    mode = {"gain": 0.85, "omega_n": 28.4, "zeta": 0.07}
+    # Truth: a springy part of 27 rad/s. By first order a mode of 25 rad/s is the likeliest, and a fit from there ends 236 nats below
+    # that from 40 rad/s, with a part that swings against the axis.
+    mode = {"gain": 0.85, "omega_n": 27.0, "zeta": 0.07}
     case = arm_case(arm_log({"arm.flexible_mode": mode}, seed=5, rows=4))
     nominal = nominal_fit(case)
     (seen,) = score_effects(case, linearised(case, nominal), ["arm.flexible_mode"])
-    ends = [rough(case, Job(nominal, test)) for test in (seen, replace(seen, values=mode, others=()))]
-    found, true = (refined(case, entry) for entry in ends if entry is not None)
+    ends = [rough(case, Job(nominal, test)) for test in (seen, replace(seen, others=()))]
+    found, from_one = (refined(case, entry) for entry in ends if entry is not None)
     assert found is not None
-    assert true is not None
-    assert found.evidence > true.evidence - 5.0
-    assert found.fit.hypothesis.effects["arm.flexible_mode"]["omega_n"] == pytest.approx(28.4, rel=0.01)
+    assert from_one is not None
+    assert found.evidence > from_one.evidence + 100.0
+    assert found.fit.hypothesis.effects["arm.flexible_mode"]["omega_n"] == pytest.approx(27.0, rel=0.01)
 
 
 def test_a_twin_of_several_sizes_begins_with_all_of_them(plant: BoundPlant, fly: Fly) -> None:
