@@ -74,6 +74,17 @@ def test_logs_of_the_plain_rig_take_no_name_away(
     assert told.numbers["shown"] == ["log 1", "log 2"]
 
 
+@pytest.mark.parametrize("held", sampled(["rubs", "as stated"], keep=[]))
+def test_a_hold_out_of_either_rig_keeps_what_one_log_shows(held: str) -> None:
+    # Truth: one log of a rig that rubs by 4e-4 N m, one of the plain rig; a hold-out that rubs is predicted better, another is silent.
+    logs = [arm_log(RIGS["rubs"], seed=71, rows=4), arm_log(seed=75, rows=4)]
+    after = answered(logs, [arm_log(RIGS[held], seed=73, rows=4)]).diagnosis
+    assert after.found == ("arm.coulomb",)
+    assert after.effects[0].parameters["b"].value == pytest.approx(4e-4, rel=0.02)
+    (told,) = (rule for rule in after.decisions if rule.rule == "hold_out_gain")
+    assert (told.outcome == "surely better") == (held == "rubs")
+
+
 @pytest.mark.soak
 def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
     logs = [arm_log(RIGS["rubs"], seed=71, seconds=8.0)]
