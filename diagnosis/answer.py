@@ -42,7 +42,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     known = _tempered(case, judged.chosen, weighed.scale)
     kept = holdout.notes if holdout is not None and judged.chosen is holdout.base else ()
     slipped = whole_rows(case, known, material.firmware)
-    notes = (*judged.notes, *kept, *slipped, *notes_of(case, seen.score_tests, judged.chosen, weighed))
+    notes = (*judged.notes, *kept, *slipped, *notes_of(case, seen.score_tests, judged.chosen, weighed, material.names))
     diagnosis = Diagnosis(
         verdict="gap",
         false_alarm_probability=seen.detection.p,
@@ -91,7 +91,7 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit
     predicted = () if holdout is None else holdout.predicted(chosen)
     told = () if holdout is None else holdout.notes
     blind = reason is Exit.TOO_UNSURE or cannot_tell(case, seen.score_tests)
-    notes = (*material.notes, *told, *notes_of(case, seen.score_tests, chosen, None))
+    notes = (*material.notes, *told, *notes_of(case, seen.score_tests, chosen, None, material.names))
     diagnosis = Diagnosis(
         verdict="cannot tell" if blind else "no gap",
         false_alarm_probability=seen.detection.p,

@@ -16,15 +16,19 @@ from sim.effect import Role
 
 
 def notes_of(
-    case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothesis, weighed: Weighed | None
+    case: Case,
+    score_tests: Sequence[ScoreTest],
+    chosen: FittedHypothesis,
+    weighed: Weighed | None,
+    names: Sequence[str] = (),
 ) -> tuple[Note, ...]:
-    """All notes of what was `chosen`; sentences.py says them."""
+    """All notes of what was `chosen`; sentences.py says them. `names` are those of the logs."""
     return (
         *_presliding(case, chosen),
         *_restless(case, chosen),
         *_moved(case, chosen),
-        *_own_events(case, chosen),
-        *_in_some_logs(case, chosen),
+        *_own_events(case, chosen, names),
+        *_in_some_logs(case, chosen, names),
         *_twins(case, weighed),
         *_imitated(score_tests, chosen),
         *_unseen(case, score_tests, chosen),
@@ -77,25 +81,29 @@ def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
         yield Note("moved_effect", entry.effect, of_effect)
 
 
-def _own_events(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
+def _own_events(case: Case, chosen: FittedHypothesis, names: Sequence[str]) -> Iterator[Note]:
     """When and how large each log shows what happens at an instant of its own."""
     for name, own in chosen.fit.hypothesis.own.items():
         effect = case.library.effects[name]
         instant, size = effect.symbol(Role.INSTANT), effect.size
         logs = {
-            f"log {log + 1}": {"instant_s": values[instant], "size": values[size.symbol], "unit": size.unit}
+            _log(names, log): {"instant_s": values[instant], "size": values[size.symbol], "unit": size.unit}
             for log, values in own.items()
             if log != ELSEWHERE and values[size.symbol] != size.zero
         }
         yield Note("own_events", name, {"symbol": size.symbol, "logs": logs})
 
 
-def _in_some_logs(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
+def _in_some_logs(case: Case, chosen: FittedHypothesis, names: Sequence[str]) -> Iterator[Note]:
     """Which logs show an effect and which deny it, where they differ."""
     for name, lack in chosen.fit.hypothesis.lacks.items():
         numbers = [flight.number for flight in case.flights]
-        shown, denied = ([f"log {n + 1}" for n in numbers if (n in lack.logs) is here] for here in (False, True))
+        shown, denied = ([_log(names, n) for n in numbers if (n in lack.logs) is here] for here in (False, True))
         yield Note("in_some_logs", name, {"shown": shown, "denied": denied})
+
+
+def _log(names: Sequence[str], number: int) -> str:
+    return names[number] if number < len(names) else f"log {number + 1}"
 
 
 def _twins(case: Case, weighed: Weighed | None) -> Iterator[Note]:
