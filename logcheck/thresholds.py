@@ -47,6 +47,18 @@ EVEN = Limit(
     "of the way before, in the rows next to a stand: 1/3 for an even brake, 1 for an axis that goes on unseen; 0.6 at most",
     "9 700 stands in the published recordings and simulated flights",
 )
+USUAL_CHANGES_PERCENT = Limit(
+    95.0,
+    "per cent",
+    "of the changes of speed within WAY_S are usual: an axis that stops from such a speed may be stopped by what moves it, or rub",
+    "180 runs of an arm with dry friction, in 79 of which a stick passed for a sensor that was not read",
+)
+COMES_BACK_SHARE = Limit(
+    0.1,
+    "share",
+    "of stretches as long as a stand, behind which the column is where it was: of fewer an axis that was not read would have jumped",
+    "the same runs",
+)
 CUT_OFF_STEPS = Limit(
     14.0, "least moves", "next to a stand on both sides, in as many rows as it lasts at most", "the same stands"
 )

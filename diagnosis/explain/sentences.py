@@ -147,7 +147,7 @@ def _own_events(note: Note) -> str:
 
 def _in_some_logs(note: Note) -> str:
     shown, denied = (" and ".join(note.numbers[key]) for key in ("shown", "denied"))
-    return f"{note.subject} acts in {shown} alone: the rig of {denied} is without, as one that was changed between them"
+    return f"{note.subject} acts in {shown} and not in {denied}, as of a rig that was changed between them"
 
 
 def _stated_predicts_better(note: Note) -> str:

@@ -82,6 +82,39 @@ def evenness(read: Readings, at: int, way: int, far: float, most_rows: int) -> f
     return float(near / further) if near * further > 0.0 else 0.0
 
 
+def speed_before(read: Readings, at: int) -> float:
+    """How fast a column is in the last rows before one."""
+    first = max(0, at - read.way)
+    return abs(float(read.values[at] - read.values[first])) / max(float(read.t_s[at] - read.t_s[first]), read.period_s)
+
+
+def usual_change_of_speed(read: Readings, stands: list[tuple[int, int]]) -> float:
+    """By how much the speed of a column changes in so many rows at most, but for rows beside its stands and a twentieth of all others."""
+    way, stood = read.way, _beside(read, stands)
+    if len(stood) <= 2 * way:
+        return 0.0
+    speed = (read.values[way:] - read.values[:-way]) / np.maximum(read.t_s[way:] - read.t_s[:-way], read.period_s)
+    moving = ~(stood[: -2 * way] | stood[way:-way] | stood[2 * way :])
+    change = np.abs(speed[way:] - speed[:-way])[moving]
+    return float(np.percentile(change, thresholds.USUAL_CHANGES_PERCENT)) if change.size else 0.0
+
+
+def comes_back(read: Readings, stands: list[tuple[int, int]], rows: int, near: float) -> float:
+    """The share of all stretches of so many rows, away from its stands, behind which a column is as `near` to where it was before."""
+    stood = _beside(read, stands)
+    away = ~(stood[:-rows] | stood[rows:]) if rows < len(stood) else stood[:0]
+    moved = np.abs(read.values[rows:] - read.values[:-rows])[away] if away.size else np.zeros(0)
+    return float(np.mean(moved <= near)) if moved.size else 0.0
+
+
+def _beside(read: Readings, stands: list[tuple[int, int]]) -> Rows:
+    """The rows of stands and those beside (n,)."""
+    stood: Rows = np.zeros(len(read.values), bool)
+    for first, last in stands:
+        stood[max(0, first - read.way) : last + read.way + 1] = True
+    return stood
+
+
 def is_set_going(u: Array, begin: int, end: int, way: int, usual_u: Array) -> bool:
     """Whether an input (n, inputs) moves far in the last `way` rows of the stand begin..end, and not in those before."""
     return moves_far(u[max(begin, end - way) : end + 2], usual_u) and not moves_far(u[begin : end - way + 1], usual_u)

@@ -14,7 +14,18 @@ import numpy as np
 
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
-from logcheck.stands.column import Readings, evenness, hardly_repeats, is_set_going, moves_far, readings_of, runs
+from logcheck.stands.column import (
+    Readings,
+    comes_back,
+    evenness,
+    hardly_repeats,
+    is_set_going,
+    moves_far,
+    readings_of,
+    runs,
+    speed_before,
+    usual_change_of_speed,
+)
 from records.log import RunLog
 from records.text.units import unit_of
 
@@ -144,7 +155,7 @@ def _dead(read: Readings, step: float) -> Iterator[Stand]:
         leaps = (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (
             leaps_out and goes_on and not starts
         )
-        cut_off = read.has_mass and not leaps and _is_cut_off(read, begin, end, least, set_going)
+        cut_off = read.has_mass and not leaps and _is_cut_off(read, begin, end, least, set_going, stands)
         if cut_off and not arrives:  # so dense are the rows that a few of them tell no speed
             arrived, arrives = moves[max(0, begin - way) : begin], True
         if leaps or cut_off:
@@ -153,7 +164,9 @@ def _dead(read: Readings, step: float) -> Iterator[Stand]:
             yield Stand(begin, end, abs(into) * leaps_in, abs(out) * leaps_out, speed)
 
 
-def _is_cut_off(read: Readings, begin: int, end: int, least: float, set_going: bool) -> bool:
+def _is_cut_off(
+    read: Readings, begin: int, end: int, least: float, set_going: bool, stands: list[tuple[int, int]]
+) -> bool:
     """Whether the column is under way up to the stand begin..end, and from it on, as no axis is that comes to rest and leaves it.
 
     One that an input has `set_going` leaves it as it likes.
@@ -166,7 +179,24 @@ def _is_cut_off(read: Readings, begin: int, end: int, least: float, set_going: b
     alone = thresholds.CUT_OFF_ALONE_STEPS * least, min(rows // 2, way)
     comes = [evenness(read, begin, -1, *limits) for limits in (both, alone)]
     goes = evenness(read, end + 1, 1, *both)
-    return (not set_going and min(comes[0], goes) > thresholds.EVEN) or comes[1] > thresholds.EVEN
+    if not set_going and _is_even(comes[0]) and _is_even(goes):
+        return True
+    return comes[1] > thresholds.EVEN and not _is_stopped(read, begin, end, margin, stands)
+
+
+def _is_even(share: float) -> bool:
+    return thresholds.EVEN < share < 1.0 / thresholds.EVEN
+
+
+def _is_stopped(read: Readings, begin: int, end: int, near: float, stands: list[tuple[int, int]]) -> bool:
+    """Whether the axis may well have been stopped, by dry friction say: as hard as it is moved elsewhere, or for so long that, unseen, it
+    would hardly have come back to where it stood."""
+    was_read_again = end + 1 < len(read.values)
+    if was_read_again and abs(float(read.values[end + 1] - read.values[end])) >= near:
+        return False  # and it did jump
+    if speed_before(read, begin) < usual_change_of_speed(read, stands):
+        return True
+    return was_read_again and comes_back(read, stands, end + 1 - begin, near) < thresholds.COMES_BACK_SHARE
 
 
 def _is_leap(move: float, near: Array, least: float) -> bool:
