@@ -289,12 +289,13 @@ def _grown(
     return ([job for own in (first, *others) for job in own] if first else []), worth
 
 
+def _names_of(case: Case, job: Job) -> frozenset[str]:
+    return frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect))
+
+
 def _begun(case: Case, jobs: Sequence[Job], known: Mapping[frozenset[str], FittedHypothesis]) -> list[FittedHypothesis]:
-    """The first fit of each job that is new."""
-    fresh: dict[frozenset[str], Job] = {}
-    for job in jobs:
-        fresh.setdefault(frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect)), job)
-    wanted = [job for names, job in fresh.items() if names not in known]
+    """The first fit of each job that is new, the better one where two lead to the same effects: they may end on other hills."""
+    wanted = [job for job in jobs if _names_of(case, job) not in known]
     firsts: dict[frozenset[str], FittedHypothesis] = {}
     keep_better(firsts, (entry for entry in thread_map(lambda job: rough(case, job), wanted) if entry))
     return list(firsts.values())
