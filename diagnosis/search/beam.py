@@ -92,7 +92,7 @@ def first_fits(
     least = max(decisions.chance_nats(), decisions.NEGLIGIBLE_SHARE * score_tests[0].gain) if score_tests else 0.0
     jobs = _promising(nominal.fit, score_tests, least)[: decisions.SINGLES]
     jobs += _promising(nominal.fit, scored_as_stated(case, nominal.fit), least)[: decisions.SINGLES]
-    begun = _begun(case, jobs, found)
+    begun = first_of_each(case, jobs, found)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
     return FirstFits(found, tuple(begun), nominal, linearisation, tuple(score_tests))
@@ -125,7 +125,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown, worth = _grown(case, best, names, worth)
-        if not best or not _end(case, _begun(case, grown, found), found, best[0]):
+        if not best or not _end(case, first_of_each(case, grown, found), found, best[0]):
             break
         exchange(case, found, worth)
         shrink(case, found)
@@ -293,7 +293,9 @@ def _names_of(case: Case, job: Job) -> frozenset[str]:
     return frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect))
 
 
-def _begun(case: Case, jobs: Sequence[Job], known: Mapping[frozenset[str], FittedHypothesis]) -> list[FittedHypothesis]:
+def first_of_each(
+    case: Case, jobs: Sequence[Job], known: Mapping[frozenset[str], FittedHypothesis]
+) -> list[FittedHypothesis]:
     """The first fit of each job that is new, the better one where two lead to the same effects: they may end on other hills."""
     wanted = [job for job in jobs if _names_of(case, job) not in known]
     firsts: dict[frozenset[str], FittedHypothesis] = {}

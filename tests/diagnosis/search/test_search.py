@@ -16,7 +16,7 @@ from diagnosis.fit.gauss_newton import Fit, Free, fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.beam import Alone, Search, certainties, search
+from diagnosis.search.beam import Alone, Search, certainties, first_of_each, search
 from diagnosis.search.exchange import exchange, fit_twins, shrink
 from diagnosis.search.fitting import Job, once_more, refined, rough
 from sim.added_effects import library
@@ -193,6 +193,19 @@ def test_a_mode_between_two_starts_is_found_from_the_better_hill() -> None:
     assert from_one is not None
     assert found.evidence > from_one.evidence + 100.0
     assert found.fit.hypothesis.effects["arm.flexible_mode"]["omega_n"] == pytest.approx(27.0, rel=0.01)
+
+
+def test_of_two_ways_to_the_same_effects_the_better_is_kept_whichever_comes_first() -> None:
+    # Truth: the same mode; from 25 rad/s a fit ends on the lower hill.
+    mode = {"gain": 0.85, "omega_n": 27.0, "zeta": 0.07}
+    case = arm_case(arm_log({"arm.flexible_mode": mode}, seed=5, rows=4))
+    nominal = nominal_fit(case)
+    (seen,) = score_effects(case, linearised(case, nominal), ["arm.flexible_mode"])
+    ways = [Job(nominal, replace(seen, values=start.values, others=())) for start in seen.starts]
+    ends = [first_of_each(case, order, {}) for order in (ways, ways[::-1])]
+    assert [len(end) for end in ends] == [1, 1]
+    assert ends[0][0].evidence == ends[1][0].evidence
+    assert ends[0][0].fit.hypothesis.effects["arm.flexible_mode"]["gain"] > 0.0
 
 
 def test_a_twin_of_several_sizes_begins_with_all_of_them(plant: BoundPlant, fly: Fly) -> None:
