@@ -84,10 +84,10 @@ def _screened(
     seen = replace(seen, still=_still(seen))
     names = _first_fits(seen.still or seen)
     best = names.best
-    again = plain_beside(seen.case, best.fit, nominal)
+    again = plain_beside(case, best.fit, nominal)
     if again is None:
         return _with_names(seen, names), names
-    gain = log_evidence(again, seen.case.library.effects) - seen.retuned.evidence
+    gain = log_evidence(again, case.library.effects) - seen.retuned.evidence
     better = gain > decisions.TAKEN_IN
     outcome = "the plant alone is fitted from there" if better else "the plant alone stays as it was fitted"
     rule = decided("plain_again", " + ".join(best.effects), gain, decisions.TAKEN_IN, outcome)

@@ -9,7 +9,7 @@ import pytest
 from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.explain.places import place_shares
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
@@ -180,13 +180,20 @@ def test_an_effect_that_parameters_imitate_in_part_is_fitted_without_going_astra
     assert found.fit.hypothesis.effects["tail_rotor.warmup"]["a"] == pytest.approx(0.22, rel=0.05)
 
 
-def test_a_mode_between_two_starts_is_found_from_the_better_hill() -> None:
-    # Truth: a springy part of 27 rad/s. By first order a mode of 25 rad/s is the likeliest, and a fit from there ends 236 nats below
-    # that from 40 rad/s, with a part that swings against the axis.
-    mode = {"gain": 0.85, "omega_n": 27.0, "zeta": 0.07}
-    case = arm_case(arm_log({"arm.flexible_mode": mode}, seed=5, rows=4))
+def springy() -> tuple[Case, Fit, ScoreTest]:
+    """An arm with a springy part of 27 rad/s, fitted without, and how its mode shows.
+
+    By first order a mode of 25 rad/s is the likeliest; a fit from there ends on a lower hill than one from 40 rad/s.
+    """
+    case = arm_case(arm_log({"arm.flexible_mode": {"gain": 0.85, "omega_n": 27.0, "zeta": 0.07}}, seed=5, rows=4))
     nominal = nominal_fit(case)
     (seen,) = score_effects(case, linearised(case, nominal), ["arm.flexible_mode"])
+    return case, nominal, seen
+
+
+def test_a_mode_between_two_starts_is_found_from_the_better_hill() -> None:
+    # Truth: 27 rad/s, 236 nats above the hill of the first start, whose part swings against the axis.
+    case, nominal, seen = springy()
     ends = [rough(case, Job(nominal, test)) for test in (seen, replace(seen, others=()))]
     found, from_one = (refined(case, entry) for entry in ends if entry is not None)
     assert found is not None
@@ -196,11 +203,8 @@ def test_a_mode_between_two_starts_is_found_from_the_better_hill() -> None:
 
 
 def test_of_two_ways_to_the_same_effects_the_better_is_kept_whichever_comes_first() -> None:
-    # Truth: the same mode; from 25 rad/s a fit ends on the lower hill.
-    mode = {"gain": 0.85, "omega_n": 27.0, "zeta": 0.07}
-    case = arm_case(arm_log({"arm.flexible_mode": mode}, seed=5, rows=4))
-    nominal = nominal_fit(case)
-    (seen,) = score_effects(case, linearised(case, nominal), ["arm.flexible_mode"])
+    # Truth: a part that swings with the axis; from 25 rad/s it would be against it.
+    case, nominal, seen = springy()
     ways = [Job(nominal, replace(seen, values=start.values, others=())) for start in seen.starts]
     ends = [first_of_each(case, order, {}) for order in (ways, ways[::-1])]
     assert [len(end) for end in ends] == [1, 1]
