@@ -3,8 +3,9 @@
 An axis that slows down, rests and leaves its rest starts by less than it moves next. Where the first move behind a stand is far more than
 those after it, the readings between were old. So they were where it came back to where it had been, and no jump shows: an axis that comes
 to rest by an even brake goes three times as far in the second last stretch of time as in the last; one that is cut off, as far. This is
-asked of positions alone, as nothing brakes a current or a rate, and not of an axis that an input sets going as it moves itself: a current
-or a rate that an input sets going begins with its largest move.
+asked of positions alone, as nothing brakes a current or a rate, not of an axis that an input sets going as it moves itself, nor of one
+that is no faster than it is stopped elsewhere: dry friction and play hold what turns back. A current or a rate that an input sets going
+begins with its largest move.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -180,8 +181,10 @@ def _is_cut_off(
     comes = [evenness(read, begin, -1, *limits) for limits in (both, alone)]
     goes = evenness(read, end + 1, 1, *both)
     if not set_going and _is_even(comes[0]) and _is_even(goes):
-        return True
-    return comes[1] > thresholds.EVEN and not _is_stopped(read, begin, end, margin, stands)
+        return not _is_stopped(read, begin, end, margin, stands)
+    if comes[1] <= thresholds.EVEN or _is_stopped(read, begin, end, margin, stands):
+        return False
+    return not _would_have_jumped(read, begin, end, margin, stands)
 
 
 def _is_even(share: float) -> bool:
@@ -189,14 +192,20 @@ def _is_even(share: float) -> bool:
 
 
 def _is_stopped(read: Readings, begin: int, end: int, near: float, stands: list[tuple[int, int]]) -> bool:
-    """Whether the axis may well have been stopped, by dry friction say: as hard as it is moved elsewhere, or for so long that, unseen, it
-    would hardly have come back to where it stood."""
-    was_read_again = end + 1 < len(read.values)
-    if was_read_again and abs(float(read.values[end + 1] - read.values[end])) >= near:
-        return False  # and it did jump
-    if speed_before(read, begin) < usual_change_of_speed(read, stands):
-        return True
-    return was_read_again and comes_back(read, stands, end + 1 - begin, near) < thresholds.COMES_BACK_SHARE
+    """Whether the axis may well have been stopped, by dry friction or play say: as hard as it is moved elsewhere."""
+    return not _jumps(read, end, near) and speed_before(read, begin) < usual_change_of_speed(read, stands)
+
+
+def _would_have_jumped(read: Readings, begin: int, end: int, near: float, stands: list[tuple[int, int]]) -> bool:
+    """Whether the axis stood for so long that, unseen, it would hardly have come back to where it is read again."""
+    if end + 1 == len(read.values) or _jumps(read, end, near):
+        return False
+    return comes_back(read, stands, end + 1 - begin, near) < thresholds.COMES_BACK_SHARE
+
+
+def _jumps(read: Readings, end: int, near: float) -> bool:
+    """Whether it is read again elsewhere."""
+    return end + 1 < len(read.values) and abs(float(read.values[end + 1] - read.values[end])) >= near
 
 
 def _is_leap(move: float, near: Array, least: float) -> bool:
