@@ -1,6 +1,8 @@
 """Dry friction that differs by the direction.
 
-(1)  level b_c + (difference / 2) sgn(velocity)
+(1)  level b_c + (difference / 2) (sgn(velocity) + e)
+
+With e = 0 the axis rubs as much less one way as it rubs more the other; with 1 or -1 it rubs more one way, and the other as stated.
 """
 
 from collections.abc import Iterator
@@ -35,13 +37,14 @@ def effects(model: Model) -> Iterator[Effect]:
                     0.0,
                     (-0.005 * size, 0.005 * size),
                 ),
+                EffectParameter("e", "1", -1.0, 1.0, 0.0, refining=True),
             ),
-            equation=f"- (b_c + difference/2 sgn({speed})) sgn({speed})",
+            equation=f"- (b_c + difference/2 (sgn({speed}) + e)) sgn({speed})",
             story="The bearing rubs harder one way than the other.",
             source="Coulomb friction by direction",
             prior=PRIOR,
             holds_at_rest=True,
-            edit=lambda model, difference, axis=axis: _edit(model, difference, axis),
+            edit=lambda model, difference, e, axis=axis: _edit(model, difference, e, axis),
             twins={
                 f"{axis}.offset_force": "while the axis moves, both are one constant torque",
                 f"{axis}.coulomb": "what rubs one way only is half as much both ways beside a pull",
@@ -49,6 +52,6 @@ def effects(model: Model) -> Iterator[Effect]:
         )
 
 
-def _edit(model: Model, difference: sympy.Symbol, name: str) -> Model:
-    sign = sign_of(model, name)
-    return with_axis(model, name, lambda axis: replace(axis, coulomb=positive(axis.coulomb + difference / 2 * sign)))
+def _edit(model: Model, difference: sympy.Symbol, e: sympy.Symbol, name: str) -> Model:
+    more = difference / 2 * (sign_of(model, name) + e)
+    return with_axis(model, name, lambda axis: replace(axis, coulomb=positive(axis.coulomb + more)))
