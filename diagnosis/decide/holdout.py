@@ -1,6 +1,6 @@
 """What logs that were not fitted say: how much better what was found predicts them, as one number with its standard error."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -13,7 +13,7 @@ from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.hypothesis.hypothesis import ELSEWHERE, Hypothesis, nominal_hypothesis
 from diagnosis.validate.judged_logs import JudgedLogs
 from diagnosis.validate.score import Errors, Score, score
 from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
@@ -21,6 +21,7 @@ from jobs.thread_map import thread_map
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note
 from records.table import ControllerTable
+from sim.effect import Role
 
 NATS = "nats a reading"
 
@@ -65,11 +66,27 @@ class Holdout:
         surely predicts these better, and noise, which is not judged, is its own or that of `base`, whichever predicts better."""
         if hypothesis not in self.ways:
             other = self.base.fit.hypothesis
-            usual = self.logs.under_better_noise(self._without_events(hypothesis), other)
-            eventful = self.logs.under_better_noise(hypothesis, other)
-            again = is_surely_better(score(self.logs.errors(eventful), self.logs.errors(usual)))
-            self.ways[hypothesis] = eventful if again else usual
+            best = usual = self.logs.under_better_noise(self._without_events(hypothesis), other)
+            for way in self._eventful(hypothesis):
+                eventful = self.logs.under_better_noise(way, other)
+                told = [score(self.logs.errors(eventful), self.logs.errors(rival)) for rival in (usual, best)]
+                best = eventful if is_surely_better(told[0]) and told[1].gain >= 0.0 else best
+            self.ways[hypothesis] = best
         return self.ways[hypothesis]
+
+    def _eventful(self, hypothesis: Hypothesis) -> Iterator[Hypothesis]:
+        """The same with its events, and what others are without: when and as they happened in another log, in all of which a rehearsed run
+        has them alike, or, of one that lasts, before these began."""
+        yield hypothesis
+        effects = self.case.library.effects
+        for name, by_log in hypothesis.own.items():
+            happened = [values for log, values in by_log.items() if log != ELSEWHERE and values != by_log[ELSEWHERE]]
+            yield from (hypothesis.with_effects({**hypothesis.effects, name: {**values}}) for values in happened)
+        for name, values in hypothesis.effects.items():
+            instant = effects[name].having(Role.INSTANT)
+            if instant is not None and effects[name].having(Role.DURATION) is None and happens(effects[name], values):
+                before = {**values, instant.symbol: instant.lower}
+                yield hypothesis.with_effects({**hypothesis.effects, name: before})
 
     def _without_events(self, hypothesis: Hypothesis) -> Hypothesis:
         effects, lacks = self.case.library.effects, hypothesis.lacks

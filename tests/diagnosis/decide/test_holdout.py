@@ -20,6 +20,7 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import ELSEWHERE
 from diagnosis.result import Exit, Judged, Result, Seen
 from diagnosis.search.free_curve import FittedCurve
 from diagnosis.validate.judged_logs import JudgedLogs
@@ -264,6 +265,20 @@ def test_a_log_that_says_nothing_of_a_name_speaks_neither_way_and_it_is_added() 
     told = holdout.score(supposing(push).fit.hypothesis)
     assert told.gain == 0.0  # a push of another log foretells nothing
     assert added(holdout, supposing(push), 0.9)[0].effects == tuple(push)
+
+
+@pytest.mark.parametrize(("shifted_s", "counts_s"), [(6.0, [6.0]), (0.0, [0.0]), (None, [])])
+def test_a_shift_of_another_log_counts_where_these_have_it_then_or_from_the_start(
+    shifted_s: float | None, counts_s: list[float]
+) -> None:
+    # Truth: a weight that slipped after 6 s of a log that was fitted; of that held out at the same time, before, or not at all.
+    name, delta_N_m = "arm.weight_shift", 2e-3
+    there = {} if shifted_s is None else {name: {"Delta": delta_N_m, "t_1": shifted_s}}
+    _, holdout = judged(arm_log(there, seed=36))
+    shift = {"Delta": delta_N_m, "t_1": 6.0}
+    fitted_log, absent = 7, {"Delta": 0.0, "t_1": 10.0}
+    hypothesis = supposing({name: shift}).fit.hypothesis.with_own(name, {ELSEWHERE: absent, fitted_log: shift})
+    assert [v["t_1"] for v in holdout.foreseen(hypothesis).effects.values()] == counts_s
 
 
 def test_a_push_of_another_log_is_not_added_with_parameters_that_predict_worse() -> None:
