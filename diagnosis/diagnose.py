@@ -26,6 +26,7 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import has_memory
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.screening import alarmed, alone_of, beside_noise, detected_anew, seen_of
 from diagnosis.search.beam import Search, search, with_twins
@@ -45,7 +46,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     material = _within_ranges(bound, material)
     seen = seen_of(bound, material)
     material = replace(material, notes=(*material.notes, *_columns(seen, material)))
-    noisy, seen = seen, beside_noise(seen)
+    noisy, seen = _without_noise(seen)
     if not alarmed(seen.detection.p):
         return _nothing(seen, noisy, material, Exit.NOTHING_SEEN)
     seen, found = _explained(seen)
@@ -65,6 +66,20 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         perhaps = may_be_missing(judged) if left_by is Exit.TOO_UNSURE else ()
         return _nothing(seen, noisy, replace(material, notes=(*perhaps, *judged.notes)), left_by, judged.holdout)
     return _gap(seen, material, judged)
+
+
+def _without_noise(noisy: Seen) -> tuple[Seen, Seen]:
+    """What is seen beside noise, and without it where a cause is sought so. Noise with a memory also follows axes that creep where they are
+    taken to stick, and hides beside that what else is missing: where nothing shows, it is asked whether they do."""
+    seen = beside_noise(noisy)
+    if alarmed(seen.detection.p) or not has_memory(seen.case, seen.retuned.fit.hypothesis):
+        return noisy, seen
+    found_there = yielding(seen.case, [seen.retuned])
+    if found_there.beside is None:
+        return noisy, seen.because(*found_there.decisions)
+    anew = detected_anew(found_there.case, seen, found_there.beside)
+    noisy = replace(anew, decisions=(*seen.decisions, *found_there.decisions, *anew.decisions))
+    return noisy, beside_noise(noisy)
 
 
 def _within_ranges(bound: BoundPlant, material: Material) -> Material:

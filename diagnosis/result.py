@@ -86,9 +86,11 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """The logs with inputs held from row to row, the plant's fit to them, and the nats by which several commands a row are likelier."""
+    """The logs with inputs held from row to row, those to check on likewise, the plant's fit, and the nats by which several commands a row
+    are likelier."""
 
     case: Case
+    checked: Case | None
     fit: Fit
     beaten: float
 

@@ -12,8 +12,8 @@ from diagnosis.detect.detection import detect
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, held_beside, with_commands
-from diagnosis.fit.evidence import FittedHypothesis, log_evidence
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
+from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory, with_memory_from
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
@@ -45,13 +45,16 @@ def detected(case: Case, checked: Case | None) -> Seen:
 
 
 def detected_anew(case: Case, seen: Seen, beside: FittedHypothesis | None) -> Seen:
-    """The same of another reading of the logs, from the plant as it was fitted before; `beside` is what was fitted already."""
-    known = seen.retuned.fit.hypothesis
+    """The same of another reading of the logs, from the plant as it was fitted before; `beside` is what was fitted already. What inputs did
+    between rows is asked anew: where an axis was taken to stick that creeps, they may have seemed to move."""
+    known, checked = seen.retuned.fit.hypothesis, seen.checked
+    if seen.held is not None:
+        case, checked = case.with_flights(seen.held.case.flights), seen.held.checked
 
     def noisy(case: Case, found: Fit) -> Fit:
         return with_memory_from(case, found, known)
 
-    return _detected(case, seen.checked, plain_from(case, known), noisy, beside)
+    return _detected(case, checked, plain_from(case, known), noisy, beside)
 
 
 def _detected(
@@ -62,7 +65,7 @@ def _detected(
     beside: FittedHypothesis | None = None,
 ) -> Seen:
     commands, nominal, between = between_rows(case, as_held)
-    held = Held(case, as_held, between[0].value or 0.0) if nominal is not as_held else None
+    held = Held(case, checked, as_held, between[0].value or 0.0) if nominal is not as_held else None
     logs = case if held is None else with_commands(case, commands)
     others = None if checked is None or held is None else with_commands(checked, commands)
     seen, names = _screened(logs, others or checked, noisy(logs, nominal), between, beside)
@@ -78,6 +81,7 @@ def _screened(
     case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...], beside: FittedHypothesis | None
 ) -> tuple[Seen, FirstFits | None]:
     """What the plant alone leaves to the library, and single effects beside it as they begin; None of these where there is no gap."""
+    beside = None if beside is None else _as_read(case, beside)
     seen = replace(scored(case, checked, nominal, rules), beside=beside)
     if not alarmed(seen.detection.p):
         return seen, None
@@ -94,6 +98,12 @@ def _screened(
     if not better:
         return _with_names(seen, names).because(rule), names
     return replace(scored(case, checked, with_memory(case, again), (*rules, rule)), beside=beside), names
+
+
+def _as_read(case: Case, known: FittedHypothesis) -> FittedHypothesis | None:
+    """What was fitted already, as these logs are read; None where it cannot be run along them so."""
+    found = fit(case, known.fit.hypothesis, rounds=0)
+    return None if found is None else as_fitted(case, found)
 
 
 def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision, ...]) -> Seen:

@@ -1,12 +1,16 @@
 """Inputs between rows: held where a controller held them, in the mean of several commands where rows were left out."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from diagnosis.fit.between_rows import HELD, between_rows, with_commands
+from diagnosis.fit.evidence import as_fitted
 from diagnosis.hypothesis.case import Case
+from diagnosis.result import Held, Seen
+from diagnosis.screening import detected_anew
 from records.log import RunLog
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
@@ -50,3 +54,14 @@ def test_of_an_input_that_never_stands_still_the_way_is_straight() -> None:
     u = case.flights[0].filter_input.u
     assert with_commands(case, (np.inf,)).flights[0].filter_input.u[:-1] == pytest.approx(0.5 * (u[:-1] + u[1:]))
     assert with_commands(case, (HELD,)) is case
+
+
+def test_inputs_that_seemed_to_move_beside_another_plant_are_held_again() -> None:
+    # Truth: commands held from row to row, which had been taken for two a row when the logs were first read.
+    case = arm_case(sparse(arm_log(seed=81, rows=EVERY)))
+    moving, plain = with_commands(case, (2.0,)), nominal_fit(case)
+    unseen: Any = None  # no matter what showed beside it
+    seen = Seen(moving, None, as_fitted(case, plain), unseen, (), None, unseen, held=Held(case, None, plain, 20.0))
+    anew = detected_anew(moving, seen, None)
+    assert np.array_equal(anew.case.flights[0].filter_input.u, case.flights[0].filter_input.u)
+    assert anew.held is None

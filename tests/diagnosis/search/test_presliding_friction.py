@@ -106,6 +106,16 @@ def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
 
 
 @pytest.mark.soak
+def test_what_axes_that_creep_would_hide_is_named(plant: BoundPlant) -> None:
+    # Truth: the elevation is read 25 ms late, and its friction builds up over 20 mrad/s.
+    creep = {name: {"v_c": 4.0 * V_C_RAD_S} for name in CREEP}
+    log = default_flight(plant, {**creep, "psi_sensor.delay": {"tau": 0.025}}, WHOLE_S)
+    found = diagnose(plant, Material([log], [], [], [])).diagnosis
+    late = {entry.effect: entry for entry in found.effects[:2]}["psi_sensor.delay"]
+    assert late.parameters["tau"].value == pytest.approx(0.025, rel=0.1)
+
+
+@pytest.mark.soak
 def test_axes_that_give_before_they_slide_are_taken_to(giving: tuple[Case, FittedHypothesis]) -> None:
     case, nominal = giving
     hypothesis = yielding(case, [nominal]).case.stated
