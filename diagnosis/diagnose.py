@@ -33,7 +33,7 @@ from diagnosis.search.beam import Search, search, with_twins
 from diagnosis.search.draughts import Draught, draught, knocks
 from diagnosis.search.free_curve import FittedCurve, free_curve
 from diagnosis.search.lost_frames import with_losses
-from diagnosis.search.presliding_friction import changes_names, needed, yielding
+from diagnosis.search.presliding_friction import Yielding, changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.diagnosis import Firmware
@@ -74,11 +74,11 @@ def _without_noise(noisy: Seen) -> tuple[Seen, Seen]:
     seen = beside_noise(noisy)
     if alarmed(seen.detection.p) or not has_memory(seen.case, seen.retuned.fit.hypothesis):
         return noisy, seen
-    found_there = yielding(seen.case, [seen.retuned])
-    if found_there.beside is None:
-        return noisy, seen.because(*found_there.decisions)
-    anew = detected_anew(found_there.case, seen, found_there.beside)
-    noisy = replace(anew, decisions=(*seen.decisions, *found_there.decisions, *anew.decisions))
+    there = yielding(seen.case, [seen.retuned])
+    seen = seen.because(*there.decisions)
+    if there.beside is None:
+        return noisy, seen
+    noisy = _anew(seen, there)
     return noisy, beside_noise(noisy)
 
 
@@ -194,14 +194,16 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
 def _yielding(seen: Seen, found: Sequence[FittedHypothesis]) -> tuple[Seen, Seen | None]:
     """The same with the rules asked, and all anew with axes that yield near rest, where that explains the logs better beside one of those
     found; else None."""
-    asked = list(found) if seen.retuned in found else [*found, seen.retuned]
-    found_there = yielding(seen.case, asked)
-    is_anew, rules = changes_names(found_there, found[0], seen.retuned)
-    seen = seen.because(*found_there.decisions, *rules)
-    if not is_anew:
-        return seen, None
-    again = beside_noise(detected_anew(found_there.case, seen, found_there.beside))
-    return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
+    there = yielding(seen.case, list(found) if seen.retuned in found else [*found, seen.retuned])
+    is_anew, rules = changes_names(there, found[0], seen.retuned)
+    seen = seen.because(*there.decisions, *rules)
+    return seen, beside_noise(_anew(seen, there)) if is_anew else None
+
+
+def _anew(seen: Seen, there: Yielding) -> Seen:
+    """What is seen where those axes yield, after what was."""
+    anew = detected_anew(there.case, seen, there.beside)
+    return replace(anew, decisions=(*seen.decisions, *anew.decisions))
 
 
 def _searched(seen: Seen) -> Search | None:
