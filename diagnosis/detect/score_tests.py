@@ -25,7 +25,7 @@ from sim.effect import Effect, EffectParameter, Role, Values
 Array = NDArray[np.float64]
 # Where the search of a limit begins: the level below which the command stays for these shares of the time, as a peak may be a kick of a
 # moment, and beyond its peak by these factors, where only a rounded corner is reached.
-LEVEL_SHARES, PEAK_SHARES = (0.5, 0.75, 0.9, 0.97, 0.995), (1.05, 1.2)
+LEVEL_SHARES, PEAK_SHARES = (0.5, 0.75, 0.9, 0.97, 0.99, 0.995, 0.998, 0.9995), (1.05, 1.2)
 SMALL_SIZE = 0.05
 MOST_STARTS = 8  # of an effect's shapes that are scored: time
 FARTHEST_SIZE = 30.0  # references: no larger size is proposed

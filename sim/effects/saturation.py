@@ -21,7 +21,7 @@ BEYOND = 1.25
 LEAST = 0.002
 
 # Of a corner, as a share of where it lies.
-ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.2,), refining=True)
+ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.0, 0.2), refining=True)
 
 
 def effects(model: Model) -> Iterator[Effect]:

@@ -11,7 +11,7 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.nominal import plain_fit
 from sim.added_effects import library
-from tests.diagnosis.arm import arm, arm_case, arm_log
+from tests.diagnosis.arm import LONG_S, arm, arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
 
 LIMIT = {"input.saturation": {"limit": 1.9, "w": 0.05}}
@@ -25,6 +25,16 @@ def test_a_limit_is_seen_far_below_the_peaks_of_kicks() -> None:
     (seen,) = score_effects(case, linearised(case, nominal_fit(case)), ["input.saturation"])
     assert seen.gain > 30.0
     assert seen.values["limit"] == pytest.approx(1.9, rel=0.15)
+
+
+def test_a_sharp_limit_is_seen_that_peaks_alone_reach() -> None:
+    # Truth: what one command in a hundred exceeds is cut off, by no rounded corner.
+    limit_V = float(np.quantile(arm_log(seed=42, seconds=LONG_S).u, 0.99))
+    case = arm_case(arm_log({"input.saturation": {"limit": limit_V, "w": 0.0}}, seed=42, seconds=LONG_S))
+    (seen,) = score_effects(case, linearised(case, nominal_fit(case)), ["input.saturation"])
+    assert seen.gain > 30.0
+    assert seen.values["limit"] == pytest.approx(limit_V, rel=0.01)
+    assert seen.values["w"] == 0.0
 
 
 @pytest.mark.parametrize(
