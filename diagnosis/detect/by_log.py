@@ -50,7 +50,7 @@ def parts(
     case = linearisation.case
     if len(case.flights) < 2:
         return [None] * columns.shape[1]
-    score, gram = _scores_by_log(linearisation, columns)
+    score, gram = scores_by_log(linearisation, columns)
     numbers, cost = [flight.number for flight in case.flights], choice_cost(case)
     found = [_best_part(g, G, within, numbers) for g, G, within in zip(score, gram, limits, strict=True)]
     paid = [None if part is None else replace(part, gain=part.gain - cost) for part in found]
@@ -60,7 +60,7 @@ def parts(
     ]
 
 
-def _scores_by_log(linearisation: Linearisation, columns: Array) -> tuple[Array, Array]:
+def scores_by_log(linearisation: Linearisation, columns: Array) -> tuple[Array, Array]:
     """Of each column (rows, k) the scores of the parts that are one log each (k, logs), and their products (k, logs, logs), the plant's
     coefficients taken out."""
     ends = np.cumsum([run.w.size for run in linearisation.runs])
@@ -69,7 +69,7 @@ def _scores_by_log(linearisation: Linearisation, columns: Array) -> tuple[Array,
     cross = np.stack([slopes[span].T @ columns[span] for span in spans])  # (logs, free, k)
     share = np.einsum("ij,ljk->lik", linearisation.solve, cross)
     own = np.stack([-(columns[span].T @ w[span]) for span in spans])
-    score = own + np.einsum("lik,i->lk", share, slopes.T @ w)
+    score = own + np.einsum("lik,i->lk", share, linearisation.pull)
     gram = -np.einsum("lik,mik->klm", cross, share)
     gram[:, logs, logs] += np.stack([(columns[span] ** 2).sum(axis=0) for span in spans], axis=1)
     return score.T, gram

@@ -52,16 +52,16 @@ class Linearisation:
         `change` (rows,), beyond what it would add here; and the share of the change that the coefficients imitate."""
         own = self.slopes.T @ change
         moved = self.solve @ own
-        return float(moved @ (self._pull + 0.5 * own)), float(own @ moved / (change @ change))
+        return float(moved @ (self.pull + 0.5 * own)), float(own @ moved / (change @ change))
 
     def moved_by(self, answers: Array) -> Array:
         """Where theta goes from here (free,), to first order, beside what the plant lacks and the logs have: `answers` (rows,) of it."""
-        return np.asarray(-self.solve @ (self._pull - self.slopes.T @ answers))
+        return np.asarray(-self.solve @ (self.pull - self.slopes.T @ answers))
 
     def scores(self, gram: Array, cross: Array, pull: Array) -> Scores:
         """Scores of columns with products gram = E'E (k, k), cross = J'E (free, k) and pull = E'w (k,)."""
         share = self.solve @ cross
-        return Scores(gram - cross.T @ share, -(pull - share.T @ self._pull), np.diag(gram).copy())
+        return Scores(gram - cross.T @ share, -(pull - share.T @ self.pull), np.diag(gram).copy())
 
     def scores_of(self, columns: Array) -> Scores:
         """Scores of columns (rows, k)."""
@@ -81,7 +81,7 @@ class Linearisation:
         )
         cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
-        norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ self._pull - pull
+        norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ self.pull - pull
         return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
 
     def pulls(self, push: Array) -> list[Array]:
@@ -137,7 +137,7 @@ class Linearisation:
         return tuple(sum(flights) for flights in zip(*parts, strict=True))
 
     @cached_property
-    def _pull(self) -> Array:
+    def pull(self) -> Array:
         """What the innovations and what is known of the coefficients say together of each (free,)."""
         return np.asarray(self.slopes.T @ self.w + self.case.pull_of(self.fit.hypothesis.theta))
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.detect.by_log import parts
+from diagnosis.detect.by_log import parts, scores_by_log
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.search.fitting import Job, refined, rough
-from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.arm import arm, arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
 
 SPRING = {"arm.cable_spring": {"k": 4e-4, "angle_0": 0.0, "h": 0.0}}
@@ -32,6 +32,18 @@ def test_the_part_of_the_logs_that_shows_an_effect_is_found_with_its_size() -> N
     assert part.size == pytest.approx(2.0, rel=0.1)
     (positive,) = parts(there, -column, [0.0], [(0.0, 30.0)])
     assert positive is None or positive.size >= 0.0
+
+
+def test_what_each_log_says_is_together_what_all_say() -> None:
+    # Truth: a score is a sum over logs; the thrust lies a standard deviation of what is known of it off, which pulls at it.
+    index = [str(symbol) for symbol in arm().model.parameter_symbols].index("K")
+    off = float(arm().p[index] + arm().sd[index])
+    case = arm_case(*(arm_log(seed=seed, seconds=4.0, K=off) for seed in (1, 2)))
+    linearisation = linearised(case, nominal_fit(case))
+    columns = linearisation.slopes + np.random.default_rng(8).standard_normal(linearisation.slopes.shape)
+    whole, (score, gram) = linearisation.scores_of(columns), scores_by_log(linearisation, columns)
+    assert score.sum(axis=1) == pytest.approx(whole.score, abs=1e-3)
+    assert gram.sum(axis=(1, 2)) == pytest.approx(np.diag(whole.gram))
 
 
 def test_a_spring_in_one_of_two_logs_is_fitted_to_that_one() -> None:
