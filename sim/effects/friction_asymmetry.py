@@ -2,7 +2,8 @@
 
 (1)  level b_c + (difference / 2) (sgn(velocity) + e)
 
-With e = 0 the axis rubs as much less one way as it rubs more the other; with 1 or -1 it rubs more one way, and the other as stated.
+With e = 0 the axis rubs as much less one way as it rubs more the other; with 1 or -1 it rubs more one way, and the other as stated. Where
+no friction is stated e is 0: there it would be dry friction of its own.
 """
 
 from collections.abc import Iterator
@@ -10,7 +11,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import positive, sign_of, speed_name, with_axis
+from sim.edits import axis_of, positive, sign_of, speed_name, with_axis
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.prior import COMMON, Prior
@@ -23,7 +24,9 @@ PRIOR = Prior(
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each axis; the level stays at or above 0."""
     for axis, entry in model.places.axes.items():
-        size, speed = entry.torque_size, speed_name(model, axis)
+        size, speed, has_own = entry.torque_size, speed_name(model, axis), axis_of(model, axis).coulomb != 0
+        one_way = (EffectParameter("e", "1", -1.0, 1.0, 0.0, refining=True),) if has_own else ()
+        direction = f"(sgn({speed}) + e)" if has_own else f"sgn({speed})"
         yield Effect(
             name=f"{axis}.friction_asymmetry",
             depends=f"torque(sgn {speed})",
@@ -37,14 +40,14 @@ def effects(model: Model) -> Iterator[Effect]:
                     0.0,
                     (-0.005 * size, 0.005 * size),
                 ),
-                EffectParameter("e", "1", -1.0, 1.0, 0.0, refining=True),
+                *one_way,
             ),
-            equation=f"- (b_c + difference/2 (sgn({speed}) + e)) sgn({speed})",
+            equation=f"- (b_c + difference/2 {direction}) sgn({speed})",
             story="The bearing rubs harder one way than the other.",
             source="Coulomb friction by direction",
             prior=PRIOR,
             holds_at_rest=True,
-            edit=lambda model, difference, e, axis=axis: _edit(model, difference, e, axis),
+            edit=lambda model, difference, *e, axis=axis: _edit(model, difference, sum(e), axis),
             twins={
                 f"{axis}.offset_force": "while the axis moves, both are one constant torque",
                 f"{axis}.coulomb": "what rubs one way only is half as much both ways beside a pull",
@@ -52,6 +55,6 @@ def effects(model: Model) -> Iterator[Effect]:
         )
 
 
-def _edit(model: Model, difference: sympy.Symbol, e: sympy.Symbol, name: str) -> Model:
+def _edit(model: Model, difference: sympy.Symbol, e: sympy.Expr | int, name: str) -> Model:
     more = difference / 2 * (sign_of(model, name) + e)
     return with_axis(model, name, lambda axis: replace(axis, coulomb=positive(axis.coulomb + more)))
