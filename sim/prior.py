@@ -24,7 +24,8 @@ class Unlikely:
     """Values of a number with which a fitted effect is rather something else: `log_odds` more, and why.
 
     They are those below `below` or above `above`, in the number's unit, and sizes of fewer than `steps` steps of the sensor at whose
-    place the effect acts. `beside_losses` asks that the hypothesis also holds an effect that loses commands.
+    place the effect acts. `beside_losses` asks that the hypothesis also holds an effect that loses commands, `frictionless` that the axis
+    has no dry friction as stated.
     """
 
     log_odds: float
@@ -33,6 +34,7 @@ class Unlikely:
     above: float = math.inf
     steps: float = 0.0
     beside_losses: bool = False
+    frictionless: bool = False
 
     def holds(self, value: float) -> bool:
         """Whether a value is one of those that need no step."""

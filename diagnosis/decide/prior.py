@@ -27,17 +27,19 @@ def prior_odds(
     own = [effects[name] for name in fitted.effects]
     losses = any(effect.loses_commands for effect in own)
     return (
-        sum(_odds(effect, fitted, losses) for effect in own)
+        sum(_odds(effect, fitted, losses, effect.place in frictionless) for effect in own)
         + sum(effect.prior.frictionless for effect in own if effect.place in frictionless)
         + sum(_rounding(effect, fitted, steps.get(effect.place, 0.0)) for effect in own)
     )
 
 
-def _odds(effect: Effect, fitted: FittedHypothesis, losses: bool) -> float:
+def _odds(effect: Effect, fitted: FittedHypothesis, losses: bool, is_frictionless: bool) -> float:
     values, odds = fitted.fit.hypothesis.effects[effect.name], effect.prior.log_odds
     for parameter in effect.parameters:
         unlikely = parameter.unlikely
-        if unlikely and (losses or not unlikely.beside_losses) and unlikely.holds(values[parameter.symbol]):
+        if unlikely is None or unlikely.beside_losses > losses or unlikely.frictionless > is_frictionless:
+            continue
+        if unlikely.holds(values.get(parameter.symbol, parameter.first)):
             odds += unlikely.log_odds
     return odds + AT_ITS_END if _at_its_end(effect.name, fitted) else odds
 
@@ -46,7 +48,9 @@ def _rounding(effect: Effect, fitted: FittedHypothesis, step: float) -> float:
     """What sizes that may be a sensor's rounding lose."""
     values = fitted.fit.hypothesis.effects[effect.name]
     return sum(
-        p.unlikely.log_odds for p in effect.parameters if p.unlikely and p.unlikely.rounds(values[p.symbol], step)
+        p.unlikely.log_odds
+        for p in effect.parameters
+        if p.unlikely and p.unlikely.rounds(values.get(p.symbol, p.first), step)
     )
 
 

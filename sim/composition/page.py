@@ -128,9 +128,13 @@ def _beliefs(effect: Effect) -> Iterator[str]:
 def _values(parameter: EffectParameter, unlikely: Unlikely) -> str:
     if unlikely.steps:
         return f"of less than {unlikely.steps:g} steps of the sensor"
-    side, edge = ("above", unlikely.above) if math.isfinite(unlikely.above) else ("below", unlikely.below)
-    beyond = f"{side} {edge:g} {parameter.unit}" if edge and parameter.unit != "-" else f"{side} {edge:g}"
-    return f"{beyond} beside lost commands" if unlikely.beside_losses else beyond
+    edges = [
+        (side, edge) for side, edge in (("below", unlikely.below), ("above", unlikely.above)) if math.isfinite(edge)
+    ]
+    unit = "" if parameter.unit in ("-", "1") else f" {parameter.unit}"
+    beyond = " or ".join(f"{side} {edge:g}{unit if edge else ''}" for side, edge in edges)
+    beside = " beside lost commands" if unlikely.beside_losses else ""
+    return f"{beyond}{beside}{' on an axis without stated friction' if unlikely.frictionless else ''}"
 
 
 def _twins(twins: Mapping[str, str]) -> str:

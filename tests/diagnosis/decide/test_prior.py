@@ -97,6 +97,13 @@ def test_friction_one_way_only_is_rarer_where_none_is_stated() -> None:
     assert prior_odds(one_way, ["elevation"]) == prior_odds(both, ["elevation"])
 
 
+def test_friction_that_one_way_adds_is_none_where_none_is_stated() -> None:
+    # Truth: (d/2) (sgn v + 1) sgn v is (d/2) sgn v beside a pull of d/2: the two have one likelihood, and the pull goes into another.
+    even, one_way = (fitted(azimuth__friction_asymmetry={"difference": 4e-4, "e": e}) for e in (0.0, 1.0))
+    assert prior_odds(one_way, ["azimuth"]) < prior_odds(even, ["azimuth"]) - 5.0
+    assert prior_odds(one_way, ["elevation"]) == prior_odds(even, ["elevation"])
+
+
 def seen(largest: float, p: float = 1e-4) -> Seen:
     """A gap of that many nats that chance makes with a probability of p."""
     empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
