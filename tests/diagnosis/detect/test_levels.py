@@ -37,6 +37,14 @@ def test_a_sharp_limit_is_seen_that_peaks_alone_reach() -> None:
     assert seen.values["w"] == 0.0
 
 
+def test_steps_begin_at_all_that_promise_as_first_order_knows_no_hill() -> None:
+    # Truth: steps of 0.11 V at their multiples, beside which steps of 0.108 V that lie elsewhere promise more.
+    case = arm_case(arm_log({"input.quantization": {"q": 0.11}}, seed=61))
+    (seen,) = score_effects(case, linearised(case, nominal_fit(case)), ["input.quantization"])
+    assert min(abs(start.values["q"] / 0.11 - 1.0) for start in seen.starts) < 0.005
+    assert len(seen.starts) <= decisions.NEXT
+
+
 @pytest.mark.parametrize(
     ("name", "place"), [("theta_sensor.backlash", 0), ("input.backlash", 1), ("input.slew_limit", 0)]
 )
