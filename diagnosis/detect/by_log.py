@@ -94,8 +94,9 @@ def _part(score: Array, gram: Array, kept: NDArray[np.int64], within: Limits, nu
 
 
 def part_of_finite(case: Case, before: Sequence[Pass], runs: Sequence[Pass], gain: float) -> Part | None:
-    """The same of an effect at full size, which gains `gain` in all logs: those that are likelier with it."""
+    """The same of an effect at full size, which gains `gain` in all logs: those that are likelier with it; None where none is."""
     own = [run.log_likelihood - other.log_likelihood for run, other in zip(runs, before, strict=True)]
     denied = frozenset(flight.number for flight, nats in zip(case.flights, own, strict=True) if nats < 0.0)
     gained = sum(nats for nats in own if nats > 0.0) - choice_cost(case)
-    return Part(denied, 1.0, gained) if denied and gained > gain + decisions.TAKEN_IN else None
+    shown_by_some = 0 < len(denied) < len(own)
+    return Part(denied, 1.0, gained) if shown_by_some and gained > gain + decisions.TAKEN_IN else None

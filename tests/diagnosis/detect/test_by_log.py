@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.detect.by_log import parts, scores_by_log
+from diagnosis.detect.by_log import part_of_finite, parts, scores_by_log
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.gauss_newton import fit
+from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.search.fitting import Job, refined, rough
 from tests.diagnosis.arm import arm, arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
@@ -44,6 +45,17 @@ def test_what_each_log_says_is_together_what_all_say() -> None:
     whole, (score, gram) = linearisation.scores_of(columns), scores_by_log(linearisation, columns)
     assert score.sum(axis=1) == pytest.approx(whole.score, abs=1e-3)
     assert gram.sum(axis=(1, 2)) == pytest.approx(np.diag(whole.gram))
+
+
+def test_what_all_logs_deny_is_no_part_of_them() -> None:
+    # Truth: no spring in either log; one of 4e-3 N m/rad makes each of them less likely.
+    case = arm_case(*(arm_log(seed=seed, seconds=4.0) for seed in (1, 2)))
+    nominal = nominal_fit(case)
+    stiff = passes(case, nominal.hypothesis.with_effects({"arm.cable_spring": {"k": 4e-3, "angle_0": 0.0, "h": 0.0}}))
+    assert stiff is not None
+    plain = linearised(case, nominal).runs
+    assert all(run.log_likelihood < other.log_likelihood for run, other in zip(stiff, plain, strict=True))
+    assert part_of_finite(case, plain, stiff, -1e6) is None
 
 
 def test_a_spring_in_one_of_two_logs_is_fitted_to_that_one() -> None:
