@@ -65,18 +65,20 @@ class Holdout:
         """What a hypothesis says of these logs: an event that happened in another log, and what others are without, counts only where it
         surely predicts these better, and noise, which is not judged, is its own or that of `base`, whichever predicts better."""
         if hypothesis not in self.ways:
-            other = self.base.fit.hypothesis
-            best = usual = self.logs.under_better_noise(self._without_events(hypothesis), other)
-            for way in self._eventful(hypothesis):
+            other, without = self.base.fit.hypothesis, self._without_events(hypothesis)
+            usual = self.logs.under_better_noise(without, other)
+            best, gained = usual, 0.0
+            for way in self._eventful(hypothesis) if without is not hypothesis else ():
                 eventful = self.logs.under_better_noise(way, other)
-                told = [score(self.logs.errors(eventful), self.logs.errors(rival)) for rival in (usual, best)]
-                best = eventful if is_surely_better(told[0]) and told[1].gain >= 0.0 else best
+                told = score(self.logs.errors(eventful), self.logs.errors(usual))
+                if is_surely_better(told) and told.gain > gained:
+                    best, gained = eventful, told.gain
             self.ways[hypothesis] = best
         return self.ways[hypothesis]
 
     def _eventful(self, hypothesis: Hypothesis) -> Iterator[Hypothesis]:
-        """The same with its events, and what others are without: when and as they happened in another log, in all of which a rehearsed run
-        has them alike, or, of one that lasts, before these began."""
+        """The same with its events, and with what others are without: as they happened in another log, as logs of one simulation have them
+        alike, or, of an event that lasts, as happened before these began."""
         yield hypothesis
         effects = self.case.library.effects
         for name, by_log in hypothesis.own.items():

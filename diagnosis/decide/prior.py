@@ -37,7 +37,11 @@ def _odds(effect: Effect, fitted: FittedHypothesis, losses: bool, is_frictionles
     values, odds = fitted.fit.hypothesis.effects[effect.name], effect.prior.log_odds
     for parameter in effect.parameters:
         unlikely = parameter.unlikely
-        if unlikely is None or unlikely.beside_losses > losses or unlikely.frictionless > is_frictionless:
+        if (
+            unlikely is None
+            or (unlikely.beside_losses and not losses)
+            or (unlikely.frictionless and not is_frictionless)
+        ):
             continue
         if unlikely.holds(values.get(parameter.symbol, parameter.first)):
             odds += unlikely.log_odds
