@@ -229,7 +229,7 @@ def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str])
 
 def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
     """Effects on the way of the signals, and limits: tried at each of their starts at full size. Steps keep several, as each has a hill of
-    its own: half of one promised 121 nats and ended at 133, a near one 115 and 889."""
+    its own."""
     effects = [case.library.effects[name] for name in names]
     begun = thread_map(lambda effect: _ways(case, linearisation, effect), effects)
     ways = [(effect, way) for effect, found in zip(effects, begun, strict=True) for way in found]

@@ -180,11 +180,12 @@ def _is_cut_off(
     alone = thresholds.CUT_OFF_ALONE_STEPS * least, min(rows // 2, way)
     comes = [evenness(read, begin, -1, *limits) for limits in (both, alone)]
     goes = evenness(read, end + 1, 1, *both)
-    if not set_going and _is_even(comes[0]) and _is_even(goes):
-        return not _is_stopped(read, begin, end, margin, stands)
-    if comes[1] <= thresholds.EVEN or _is_stopped(read, begin, end, margin, stands):
+    on_both_sides = not set_going and _is_even(comes[0]) and _is_even(goes)
+    if not on_both_sides and comes[1] <= thresholds.EVEN:
         return False
-    return not _would_have_jumped(read, begin, end, margin, stands)
+    if _is_stopped(read, begin, end, margin, stands):
+        return False
+    return on_both_sides or not _would_have_jumped(read, begin, end, margin, stands)
 
 
 def _is_even(share: float) -> bool:
