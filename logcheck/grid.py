@@ -1,6 +1,6 @@
 """Whether readings lie on the grid of their sensor, on a coarser one, or on none; and with how many digits they were printed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -38,6 +38,12 @@ def grid_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
                 f"{column} moves in steps of {own:.5g}, not of {step:.5g} as the plant states{_remedy(own / step)}",
             )
         )
+
+
+def grids_read(log: RunLog, steps: Mapping[str, float]) -> dict[str, float]:
+    """The steps in which outputs move in a log: their sensors', or those of a coarser grid on which all that was read of one lies."""
+    own = {column: grid_step(some(log.column(column))) for column in log.columns.outputs}
+    return {**steps, **{column: step for column, step in own.items() if step > steps.get(column, 0.0) > 0.0}}
 
 
 def _is_another(steps: float) -> bool:
@@ -114,7 +120,7 @@ def grid_step(values: Array) -> float:
     """The step of the grid on which all of `values` lie, as their least difference; 0 where there is none."""
     distinct = np.unique(values)
     gaps = np.diff(distinct)
-    gaps = gaps[gaps > 1e-9 * max(float(np.abs(distinct).max()), 1e-9)]
+    gaps = gaps[gaps > 1e-9 * max(float(np.abs(distinct).max(initial=0.0)), 1e-9)]
     if gaps.size < 5:
         return 0.0
     step = float(gaps.min())

@@ -8,6 +8,7 @@ import numpy as np
 
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, beginning, in_words, without
+from logcheck.grid import grids_read
 from logcheck.held import held_findings, stale_findings
 from logcheck.leaps.motion import wrap_findings
 from logcheck.leaps.seams import seam_findings
@@ -89,6 +90,7 @@ def value_findings(
     yield from wrapped
     if wrapped:  # its leaps are neither glitches nor other recordings
         return
+    steps = grids_read(log, steps)
     yield from _constant(log, name)
     yield from _copies(log, name)
     zeros = [

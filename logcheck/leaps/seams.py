@@ -104,12 +104,12 @@ def _not_back(leaps: Rows, values: Array) -> Rows:
 
 
 def new_references(log: RunLog, steps: Mapping[str, float]) -> Rows:
-    """Rows (n - 1,) behind which a reference leaps."""
+    """Rows (n - 1,) behind which a reference leaps, of which one that goes on has none."""
     new: Rows = np.zeros(len(log.t_s) - 1, bool)
     for column in log.columns.outputs:
-        values = log.extra.get(reference_name(column))
-        if values is not None:
-            new |= np.abs(np.nan_to_num(np.diff(values))) > thresholds.LEAST_SEAM_STEPS * steps.get(column, 0.0)
+        reference = reference_name(column)
+        if reference in log.extra:
+            new |= _leaps(log, reference, np.diff(log.t_s), {reference: steps.get(column, 0.0)}, 0.0)
     return new
 
 

@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from logcheck.facts import plant_facts
+from logcheck.integrity import examine
 from records.log import RunLog
-from tests.logcheck.flight import TURN_STEP_RAD, clean, examined, kinds
-from tests.replay.firmware_flights import rows_of
+from tests.logcheck.flight import TURN_STEP_RAD, clean, examined, kinds, with_column
+from tests.replay.firmware_flights import plant, rows_of
 
 
 def one_after_another(*logs: RunLog) -> RunLog:
@@ -51,3 +53,23 @@ def test_noise_of_a_count_in_a_log_at_rest_is_no_seam() -> None:
     counts = np.zeros((2001, 2))
     counts[::150], counts[1000:] = 2.0, 1.0
     assert "seam" not in kinds(examined(replace(log, y=counts * TURN_STEP_RAD, extra={})))
+
+
+@pytest.mark.parametrize("speed_rad_s", [0.05, 0.1, 0.2, 0.5])
+@pytest.mark.parametrize("step_deg", [0.5, 1.0, 3.0])
+def test_coarse_readings_of_a_fine_encoder_that_follow_their_reference_are_no_seam(
+    step_deg: float, speed_rad_s: float
+) -> None:
+    # A count comes every few rows only, and the encoder as stated would have moved ten thousand steps by then.
+    step_rad, log, facts = np.radians(step_deg), clean(), plant_facts(plant())
+    reference_rad = 0.8 * np.sin(speed_rad_s * log.t_s)
+    coarse = with_column(log, "psi_rad", np.round(reference_rad / step_rad) * step_rad)
+    follows = replace(coarse, extra={"psi_ref_rad": reference_rad})
+    fine = replace(facts, steps=dict.fromkeys(facts.steps, 1e-6))
+    assert not kinds(examine([follows], fine))
+
+
+def test_flights_of_coarse_readings_are_cut_apart_where_their_reference_leaps() -> None:
+    log = clean()
+    coarse = replace(log, y=np.round(log.y / 0.02) * 0.02, extra={})
+    assert np.flatnonzero(examined(one_after_another(coarse, coarse)).logs[0].begins).tolist() == [2001]
