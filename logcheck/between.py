@@ -13,7 +13,11 @@ Hashes = NDArray[np.uint64]
 
 
 def shared_rows(one: RunLog, other: RunLog) -> Rows:
-    """Rows (n,) of `other` that stand in `one` too, within at least 32 rows in a row that do, whatever their times."""
+    """Rows (n,) of `other` that stand in `one` too, within at least 32 rows in a row that do, whatever their times.
+
+    Some input changes within such rows, if any ever does: from a state that comes again, a plant under the same constant inputs goes the
+    same way again, reading for reading where these are coarse.
+    """
     mine, theirs = _windows(one), _windows(other)
     n = len(other.t_s)
     if not mine.size or not theirs.size:
@@ -22,7 +26,21 @@ def shared_rows(one: RunLog, other: RunLog) -> Rows:
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, begins, 1)
     np.add.at(edges, begins + 2**thresholds.WINDOW_DOUBLINGS, -1)
-    return np.asarray(np.cumsum(edges[:-1]) > 0)
+    rows: Rows = np.cumsum(edges[:-1]) > 0
+    return rows & _runs_with(rows, _input_changes(other))
+
+
+def _input_changes(log: RunLog) -> Rows:
+    """Rows (n,) in which an input is another than in the row before; all, where none ever is."""
+    changes = np.concatenate([[False], (np.diff(log.u, axis=0) != 0.0).any(axis=1)])
+    return changes if changes.any() else np.ones_like(changes)
+
+
+def _runs_with(rows: Rows, some: Rows) -> Rows:
+    """The rows (n,) in runs of `rows` of which a row behind the first is one of `some`."""
+    first = rows & ~np.concatenate([[False], rows[:-1]])
+    run = np.cumsum(first)
+    return np.isin(run, run[rows & some & ~first])
 
 
 def _windows(log: RunLog) -> Hashes:

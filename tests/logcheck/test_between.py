@@ -24,6 +24,19 @@ def test_rows_given_twice_for_training_count_once() -> None:
     assert found.logs[1].excluded.mean() > 0.9
 
 
+@pytest.mark.parametrize(("input_changes", "refused"), [(False, set()), (True, {"holdout_overlap"})])
+def test_a_plant_left_alone_goes_the_same_way_again_and_is_no_copy(input_changes: bool, refused: set[str]) -> None:
+    # Truth: 60 rows in which both angles come to rest alike, reading for reading, under inputs that stand; or with one step among them.
+    rest = np.s_[900:960]
+    logs = []
+    for log in (clean(), other_flight()):
+        u, y = log.u.copy(), log.y.copy()
+        u[rest], y[rest] = [5.0, 2.0], np.round(0.3 * np.exp(-np.arange(60) / 20.0), 2)[:, None] * [1.0, 2.0]
+        u[930:960, 1] += 0.5 * input_changes
+        logs.append(replace(log, u=u, y=y))
+    assert kinds(examined(logs[0], holdout=[logs[1]]), "refuse") == refused
+
+
 @pytest.mark.parametrize(("factor", "severity"), [(1.1, None), (1.5, "note"), (2.5, "note")])
 def test_logs_that_hold_the_same_angle_with_another_input_are_told_and_not_refused(
     factor: float, severity: str | None
