@@ -34,7 +34,7 @@ Numbers = tuple[float, float]  # standard deviation, correlation time in s
 @dataclass(frozen=True, eq=False)
 class Colour:
     """One noise with a memory: its numbers in a hypothesis, a hypothesis with others of them, or without; where its search begins, below
-    which size there is none, the shortest and the longest time."""
+    which size there is none, the `most` that one has, the shortest and the longest time."""
 
     of: Callable[[Hypothesis], Numbers | None]
     put: Callable[[Hypothesis, Numbers], Hypothesis]
@@ -42,6 +42,7 @@ class Colour:
     begun: Callable[[Hypothesis], Sequence[Hypothesis]]
     starts: tuple[Numbers, ...]
     least: float
+    most: float
     times_s: tuple[float, float]
 
 
@@ -99,7 +100,7 @@ def _likeliest(
 ) -> tuple[Hypothesis, float]:
     """The likeliest numbers of the `chosen` and of the white noise, without those colours that are too small to tell; and the log
     likelihood."""
-    own = [number for colour in chosen for number in (_size(colour), _time(colour))]
+    own = [number for colour in chosen for number in (size_of(colour), _time(colour))]
     found, value = likeliest_numbers(case, hypothesis, [*white, *own])
     kept = found
     for colour in chosen:
@@ -107,9 +108,10 @@ def _likeliest(
     return (found, value) if kept is found else (kept, likelihood_of(case, kept))
 
 
-def _size(colour: Colour) -> Number:
+def size_of(colour: Colour) -> Number:
+    """The size of a noise as a number of a hypothesis, log10 of its standard deviation: no larger than a plant file may state."""
     def put(hypothesis: Hypothesis, x: float) -> Hypothesis:
-        return colour.put(hypothesis, (float(10.0**x), _numbers(colour, hypothesis)[1]))
+        return colour.put(hypothesis, (min(float(10.0**x), colour.most), _numbers(colour, hypothesis)[1]))
 
     return Number(lambda hypothesis: float(np.log10(_numbers(colour, hypothesis)[0])), put)
 
@@ -184,6 +186,7 @@ def _push(effect: Effect, usual: float, axis: int, longest_s: float) -> Colour:
         begun,
         starts,
         NO_NOISE_SHARE * PUSH_SHARES[0] * usual,
+        effect.parameter[size].upper,
         (bounds.lower, upper),
     )
 
@@ -207,4 +210,4 @@ def _misreading(output: str, unit: float, times_s: tuple[float, float]) -> Colou
 
     starts = tuple((share * unit, rows * times_s[0]) for share in READING_SIZES for rows in READING_ROWS)
     least = NO_NOISE_SHARE * READING_SIZES[0] * unit
-    return Colour(of, put, without, begun, starts, least, times_s)
+    return Colour(of, put, without, begun, starts, least, np.inf, times_s)

@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 
 from diagnosis import decisions
 from diagnosis.diagnose import Material, diagnose
-from diagnosis.fit.coloured_noise import coloured_noise_of
+from diagnosis.fit.coloured_noise import coloured_noise_of, colours, size_of
 from diagnosis.fit.gauss_newton import fit, likelihood_of
 from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.hypothesis import noise_on, nominal_hypothesis
@@ -106,3 +106,17 @@ def test_a_torque_that_stays_for_longer_than_a_share_of_the_longest_log_is_no_no
     longest_s = max(log.t_s[-1] - log.t_s[0] for log in logs)
     found = coloured_noise_of(case, start).effects[gust.name]
     assert found[time] == pytest.approx(decisions.LONGEST_MEMORY_SHARE * longest_s)
+
+
+@pytest.mark.parametrize("torques", [100.0, 1.0])
+def test_a_torque_that_comes_and_goes_stays_one_that_a_plant_file_may_state(torques: float) -> None:
+    # Truth: noise of a hundred usual torques, which no plant file may state, is as large as one may.
+    case = arm_case(arm_log(seed=74))
+    (push, *_) = colours(case)
+    effect = noise_on(case, 0)
+    assert effect is not None
+    sigma = effect.parameter[effect.symbol(Role.STRENGTH)]
+    usual = case.library.bound.model.places.axes["arm"].torque_size
+    start = push.put(nominal_hypothesis(case, -2.0), (0.1 * usual, 0.5))
+    found = size_of(push).put(start, np.log10(torques * usual))
+    assert push.of(found) == (min(torques * usual, sigma.upper), 0.5)
