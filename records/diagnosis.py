@@ -194,7 +194,7 @@ class Shrinkage:
     """Errors of prediction on the hold-out logs by output, and which share of the removable error the effects remove.
 
     `agreement` tells of the same predictions by output and, under the name of its rate, of how fast it changes; `closed_loop` of
-    flights by the logs' own controller, None where it is not at hand.
+    flights by the logs' own controller, None where it is not at hand. `window_s` is how long each prediction runs.
     """
 
     rms_nominal: Mapping[str, float]
@@ -205,6 +205,7 @@ class Shrinkage:
     fraction_ci95: tuple[float, float] | None
     agreement: Mapping[str, Agreement] = field(default_factory=dict)
     closed_loop: ClosedLoop | None = None
+    window_s: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import sympy
@@ -73,6 +73,16 @@ class EffectParameter:
     role: Role = Role.NUMBER
     rough: bool = False
     unlikely: Unlikely | None = None
+
+    def at_pace(self, second_s: float) -> "EffectParameter":
+        """The same of a plant that takes `second_s` for what others do in a second: times are so much longer, rates so much less. Instants
+        are those of the logs."""
+        factor = second_s if self.unit == "s" else 1.0 / second_s if self.role is Role.SLOPE else 1.0
+        if factor == 1.0 or self.role in (Role.INSTANT, Role.BEGINNING):
+            return self
+        moved = {name: factor * getattr(self, name) for name in ("lower", "upper", "reference")}
+        zero = None if self.zero is None else factor * self.zero
+        return replace(self, **moved, zero=zero, starts=tuple(factor * start for start in self.starts))
 
     @property
     def is_size(self) -> bool:

@@ -71,7 +71,8 @@ class Model:
     that a log of the plant may carry (the speed of a rotor that has no state), by column name. `places` says where effects can act,
     `starts` where the states that effects brought, the last of `states`, begin: at 0 or where another state is. `switches` are those of
     the parameters that are 1, or 0 to leave out the terms that vanish with them; the equations have no slopes by them. `sleepers` are
-    states that stand still and move nothing while the switch beside them is 0.
+    states that stand still and move nothing while the switch beside them is 0. `second_s` is how long the plant takes for what a rig of
+    the table does in a second (sim/equations/pace.py).
     """
 
     name: str
@@ -87,6 +88,7 @@ class Model:
     starts: Mapping[sympy.Symbol, sympy.Expr] = field(default_factory=dict)
     switches: tuple[sympy.Symbol, ...] = ()
     sleepers: Mapping[sympy.Symbol, sympy.Symbol] = field(default_factory=dict)
+    second_s: float = 1.0
 
     @cached_property
     def parameter_symbols(self) -> tuple[sympy.Symbol, ...]:

@@ -19,10 +19,11 @@ def instants(linearisation: Linearisation, effect: Effect) -> list[dict[str, flo
     if target is None or not effect.is_event:
         return []
     times_s, scores = linearisation.steps(target)
+    untold = times_s <= times_s[0] + decisions.UNTOLD_S * linearisation.case.second_s  # before any reading counts
     symbol, lasts = effect.symbol(Role.INSTANT), effect.having(Role.DURATION)
     if lasts is not None:
-        return [{symbol: start, lasts.symbol: duration} for start, duration in _pulses(times_s, scores)]
-    return [{symbol: instant} for instant in (*_jumps(linearisation, target), *_edges(times_s, scores))]
+        return [{symbol: start, lasts.symbol: duration} for start, duration in _pulses(times_s, untold, scores)]
+    return [{symbol: instant} for instant in (*_jumps(linearisation, target), *_edges(times_s, untold, scores))]
 
 
 def happens(effect: Effect, values: Values) -> bool:
@@ -34,7 +35,7 @@ def happens(effect: Effect, values: Values) -> bool:
 def happened(case: Case, hypothesis: Hypothesis) -> bool:
     """Whether each event that does not end happens in some log while its readings count: before, it is another value of what it changes."""
     return all(
-        any(_between(flight, hypothesis.over(flight).effects[name][instant.symbol]) for flight in case.flights)
+        any(_between(case, flight, hypothesis.over(flight).effects[name][instant.symbol]) for flight in case.flights)
         for name in case.added(hypothesis.effects)
         if (instant := _lasting(case.library.effects[name])) is not None
     )
@@ -45,9 +46,9 @@ def _lasting(effect: Effect) -> EffectParameter | None:
     return None if effect.having(Role.DURATION) else effect.having(Role.INSTANT)
 
 
-def _between(flight: FilteredLog, instant_s: float) -> bool:
+def _between(case: Case, flight: FilteredLog, instant_s: float) -> bool:
     t_s = flight.log.t_s
-    return told_from_s(t_s) < instant_s < float(t_s[-1])
+    return told_from_s(t_s, case.second_s) < instant_s < float(t_s[-1])
 
 
 def _jumps(linearisation: Linearisation, target: int) -> list[float]:
@@ -63,12 +64,12 @@ def _jumps(linearisation: Linearisation, target: int) -> list[float]:
     return [max(found)[1]]
 
 
-def _pulses(times_s: Array, scores: Scores) -> list[tuple[float, float]]:
+def _pulses(times_s: Array, untold: NDArray[np.bool_], scores: Scores) -> list[tuple[float, float]]:
     """Pulses from one step to a later one that take away most, in turn: when each starts and how long it lasts."""
     first, last = np.triu_indices(len(times_s), 1)
     duration_s = times_s[last] - times_s[first]
     # Over before readings count, all that is left of it is a start; what lasts half of the logs is no pulse.
-    seen = (duration_s <= 0.5 * (times_s[-1] - times_s[0])) & ~_untold(times_s)[last]
+    seen = (duration_s <= 0.5 * (times_s[-1] - times_s[0])) & ~untold[last]
 
     def norm(gram: Array) -> Array:
         return gram[first, first] + gram[last, last] - 2.0 * gram[first, last]
@@ -82,23 +83,14 @@ def _pulses(times_s: Array, scores: Scores) -> list[tuple[float, float]]:
     return [(float(times_s[first[k]]), float(duration_s[k])) for k in chosen]
 
 
-def _edges(times_s: Array, scores: Scores) -> list[float]:
+def _edges(times_s: Array, untold: NDArray[np.bool_], scores: Scores) -> list[float]:
     """Steps that take away most, in turn: when each is."""
-    whole, steps, seen = (
-        np.diag(scores.gram),
-        np.eye(len(times_s)),
-        ~_untold(times_s),
-    )  # before readings count: none in this log
+    whole, steps = np.diag(scores.gram), np.eye(len(times_s))
 
     def gains(left: Scores) -> Array:
-        return np.where(seen, gain_of(left.score, np.diag(left.gram), whole), 0.0)
+        return np.where(untold, 0.0, gain_of(left.score, np.diag(left.gram), whole))  # before: none in this log
 
     return [float(times_s[k]) for k in forward(scores, gains, lambda k: steps[:, [k]], decisions.NEXT)]
-
-
-def _untold(times_s: Array) -> NDArray[np.bool_]:
-    """Which instants are before any reading counts."""
-    return np.asarray(times_s <= times_s[0] + decisions.UNTOLD_S)
 
 
 def disturbed_by(case: Case, effect: Effect) -> int | None:

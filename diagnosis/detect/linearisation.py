@@ -165,8 +165,8 @@ class Linearisation:
         """Where in w each second of each log begins."""
         begins, first = [], 0
         for flight, run in zip(self.case.flights, self.runs, strict=True):
-            since_s = flight.log.t_s - flight.log.t_s[0]
-            rows = np.flatnonzero(np.diff(np.floor(since_s), prepend=-1.0) > 0.0)
+            since = (flight.log.t_s - flight.log.t_s[0]) / self.case.second_s
+            rows = np.flatnonzero(np.diff(np.floor(since), prepend=-1.0) > 0.0)
             begins.append(first + rows * run.w.shape[1])
             first += run.w.size
         return np.concatenate(begins)

@@ -110,6 +110,7 @@ def _likeliest(
 
 def size_of(colour: Colour) -> Number:
     """The size of a noise as a number of a hypothesis, log10 of its standard deviation: no larger than a plant file may state."""
+
     def put(hypothesis: Hypothesis, x: float) -> Hypothesis:
         return colour.put(hypothesis, (min(float(10.0**x), colour.most), _numbers(colour, hypothesis)[1]))
 

@@ -82,6 +82,11 @@ class Case:
         return theta if self.spread is None else np.asarray(self.known @ theta)
 
     @property
+    def second_s(self) -> float:
+        """How long the plant takes for what others do in a second (sim/equations/pace.py)."""
+        return self.library.bound.model.second_s
+
+    @property
     def sd(self) -> Array:
         """Standard deviations of the plant's coefficients that are not known exactly, in the order of `free`."""
         return np.asarray(self.library.bound.sd[self.free])
@@ -172,7 +177,8 @@ def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
 def _flight(library: EffectLibrary, number: int, log: RunLog, used: NDArray[np.bool_] | None) -> FilteredLog:
     filter_input = filter_input_of(log, library.bound.plant, library.outputs, used)
     filter_input, x0, p0 = with_held(library, filter_input, *start_of(library, filter_input, log.locked), log.locked)
-    return FilteredLog(number, log, _found_its_state(filter_input), x0, p0, log.locked, _drive(library, filter_input))
+    counted = _found_its_state(filter_input, library.bound.model.second_s)
+    return FilteredLog(number, log, counted, x0, p0, log.locked, _drive(library, filter_input))
 
 
 def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:
@@ -188,14 +194,14 @@ def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:
     return found
 
 
-def told_from_s(t_s: Array) -> float:
-    """From when on readings of a log count, in s; `t_s` (n,) are its instants."""
-    return float(t_s[0] + min(decisions.UNTOLD_S, decisions.UNTOLD_SHARE * (t_s[-1] - t_s[0])))
+def told_from_s(t_s: Array, second_s: float) -> float:
+    """From when on readings of a log count, in s; `t_s` (n,) are its instants, `second_s` as of the case."""
+    return float(t_s[0] + min(decisions.UNTOLD_S * second_s, decisions.UNTOLD_SHARE * (t_s[-1] - t_s[0])))
 
 
-def _found_its_state(filter_input: FilterInput) -> FilterInput:
+def _found_its_state(filter_input: FilterInput, second_s: float) -> FilterInput:
     """The filter input whose first readings do not count: until the filter knows the speeds, its innovations tell of its own start."""
-    untold = filter_input.t_s < told_from_s(filter_input.t_s)
+    untold = filter_input.t_s < told_from_s(filter_input.t_s, second_s)
     place, usual = filter_input.place.copy(), filter_input.usual.copy()
     place[untold], usual[untold] = -1, 0.0
     return replace(filter_input, place=place, usual=usual)

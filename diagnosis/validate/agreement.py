@@ -77,6 +77,6 @@ def _rate(t_s: Array, y: Array) -> Array:
     before = np.searchsorted(t_s, then - 1e-9)
     found = (y - y[before]) / np.maximum(t_s - t_s[before], 1e-12)
     first = np.zeros(len(t_s))
-    for start, end in windows(t_s):
+    for start, end in windows(t_s, 1.0):
         first[start:end] = t_s[start]
     return np.asarray(np.where(then >= first - 1e-9, found, np.nan))

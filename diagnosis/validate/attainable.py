@@ -14,7 +14,7 @@ Estimation with Applications to Tracking and Navigation, 2001, section 8.2). A t
 of a measured state that is no axis', r + (q R)^(1/2) + q tau.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,14 +31,14 @@ Push = tuple[float, float]  # standard deviation of an acceleration, its correla
 NO_PUSH: Push = (0.0, 1.0)
 
 
-def attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis, horizons_s: Sequence[float]) -> Array:
+def attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis, horizons_s: Array) -> Array:
     """Mean squares (horizons, outputs), in squares of the outputs' units, at the middle of each horizon, which ends at one of `horizons_s`
     and begins at the last one's end.
 
     Every axis is taken as free, with the inertia that it has where the log begins: one that springs or brakes could be predicted better.
     """
     library, model = case.library, case.library.bound.model
-    tau = 0.5 * (np.append(0.0, horizons_s[:-1]) + np.array(horizons_s))
+    tau = 0.5 * (np.append(0.0, horizons_s[:-1]) + horizons_s)
     axes = {str(axis.position): place for place, axis in enumerate(model.axes)}
     states = {state: 10.0 ** (2.0 * level) for state, level in hypothesis.state_noise.items()}
     coarse = coarse_steps(case, hypothesis)

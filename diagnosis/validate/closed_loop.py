@@ -68,7 +68,7 @@ def refly(case: Case, name: str, table: ControllerTable, variants: Mapping[str, 
     """The one flight of `case`; None where a model cannot be filtered along it or it ends before the filter is sure."""
     (flight,) = case.flights
     samples = flight_of(flight.log, table)
-    first = int(np.searchsorted(samples.t_s, samples.t_s[0] + settled_after_s(samples.t_s)))
+    first = int(np.searchsorted(samples.t_s, samples.t_s[0] + settled_after_s(samples.t_s, case.second_s)))
     if first + 2 >= len(samples.t_s):
         return None
     law = host_law(table)

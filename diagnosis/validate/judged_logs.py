@@ -43,4 +43,6 @@ class JudgedLogs:
     def readings(self) -> int:
         """How many readings share no error: one in each window of a second; LEAST_APART in short logs: of plants whose errors pass
         sooner."""
-        return max(sum(len(windows(flight.log.t_s)) for flight in self.case.flights), decisions.LEAST_APART)
+        return max(
+            sum(len(windows(flight.log.t_s, self.case.second_s)) for flight in self.case.flights), decisions.LEAST_APART
+        )

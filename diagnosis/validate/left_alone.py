@@ -42,7 +42,7 @@ def _errors(case: Case, hypothesis: Hypothesis) -> Array | None:
     """Predicted less read (rows, outputs) of all flights, NaN where nothing was read; None where a free run failed."""
     found = [np.empty((0, len(case.library.bound.model.outputs)))]
     for flight in case.flights:
-        span = _rest_of(flight)
+        span = _rest_of(flight, case.second_s)
         if span is not None:
             ahead = predictions(case, flight, hypothesis, [span])[span.first :]
             if not np.isfinite(ahead).any():
@@ -51,10 +51,10 @@ def _errors(case: Case, hypothesis: Hypothesis) -> Array | None:
     return np.concatenate(found)
 
 
-def _rest_of(flight: FilteredLog) -> FreeRun | None:
+def _rest_of(flight: FilteredLog, second_s: float) -> FreeRun | None:
     """From the first row at which the filter can tell the speeds to the end; None in a log that is shorter."""
     t_s = flight.log.t_s
-    start = int(np.searchsorted(t_s, t_s[0] + settled_after_s(t_s)))
+    start = int(np.searchsorted(t_s, t_s[0] + settled_after_s(t_s, second_s)))
     return FreeRun(start, start, len(t_s)) if start < len(t_s) - 1 else None
 
 

@@ -35,9 +35,9 @@ def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
 def _squares(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> tuple[Array, Array]:
     """Squared errors (rows, outputs) of the predictions, and of holding each window's first reading, over the same rows."""
     y, held = flight.log.y, np.full_like(flight.log.y, np.nan)
-    spans = [
-        FreeRun(first, first, last) for first, last in windows(flight.log.t_s, foreseen_s(case.library.bound, flight))
-    ]
+    second_s = case.second_s
+    length_s = foreseen_s(case.library.bound, flight) / second_s
+    spans = [FreeRun(first, first, last) for first, last in windows(flight.log.t_s, second_s, length_s)]
     for span in spans:
         held[span.first : span.last] = y[span.first]
     own, still = (predictions(case, flight, hypothesis, spans) - y) ** 2, (held - y) ** 2
@@ -48,12 +48,12 @@ def _squares(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> tuple[A
 def foreseen_s(bound: BoundPlant, flight: FilteredLog) -> float:
     """The time constant with which an error of the state grows, of the plant's fastest unstable pole where the log starts.
 
-    A window's second at most, and a few rows at least.
+    A window at most, and a few rows at least.
     """
-    model = bound.model
+    model, longest_s = bound.model, WINDOW_S * bound.model.second_s
     x0, u0 = flight.x0[: len(model.states)], np.nanmedian(flight.log.u, axis=0)
     with np.errstate(all="ignore"):
         A = reference(model).A(0.0, x0, u0, bound.p, np.zeros(len(model.axes)))
     fastest_rad_s = float(np.max(np.linalg.eigvals(A).real)) if np.all(np.isfinite(A)) else 0.0
-    grown_s = 1.0 / fastest_rad_s if fastest_rad_s > 0.0 else WINDOW_S
-    return min(WINDOW_S, max(grown_s, LEAST_WINDOW_ROWS * flight.step_s))
+    grown_s = 1.0 / fastest_rad_s if fastest_rad_s > 0.0 else longest_s
+    return min(longest_s, max(grown_s, LEAST_WINDOW_ROWS * flight.step_s))

@@ -40,6 +40,7 @@ def predictions(
 
     NaN in rows of no span, and where the filter fails or cannot yet tell.
     """
+    second_s = case.library.bound.model.second_s
     library, hypothesis = case.library, hypothesis.over(flight)
     compiled = library.compiled(hypothesis.effects)
     filter_input = filter_input_under(case, compiled, flight, hypothesis)
@@ -58,10 +59,10 @@ def predictions(
     ahead = Noise(none, np.zeros_like(noise.rub), none, none, noise.forget, 0.0)
     slots = [place if place < outputs else -1 for place in range(len(library.outputs))]
     t_s = flight.log.t_s
-    for span in [FreeRun(first, first, last) for first, last in windows(t_s)] if spans is None else spans:
+    for span in [FreeRun(first, first, last) for first, last in windows(t_s, second_s)] if spans is None else spans:
         begin = int(np.searchsorted(filter_input.t_s, t_s[span.start] - max(lateness) + 1e-9, side="right")) - 1
         end = int(np.searchsorted(filter_input.t_s, t_s[span.last - 1] + 1e-9, side="right"))
-        if begin < 0 or t_s[span.start] < t_s[0] + settled_after_s(t_s):
+        if begin < 0 or t_s[span.start] < t_s[0] + settled_after_s(t_s, second_s):
             continue
         part = _unseen(unforeseen_input, begin, end, outputs)
         free = chosen.run(part, given, run.filtered[begin], ahead, slots, locked=flight.locked)
@@ -74,22 +75,21 @@ def predictions(
     return found
 
 
-def settled_after_s(t_s: Array) -> float:
-    """How long the filter runs along a log before predictions begin."""
-    return decisions.SETTLE_S * _pace(t_s)
+def settled_after_s(t_s: Array, second_s: float) -> float:
+    """How long the filter runs along a log before predictions begin; `second_s` as of sim.model.Model."""
+    return decisions.SETTLE_S * _pace(t_s, second_s)
 
 
-def _pace(t_s: Array) -> float:
-    """1 for a log that has room for a window behind what the filter needs, and for one of few rows; less for a short one of many, as
-    fast plants give."""
-    return (
-        min(1.0, float(t_s[-1] - t_s[0]) / (decisions.SETTLE_S + WINDOW_S)) if len(t_s) >= decisions.SHORT_ROWS else 1.0
-    )
+def _pace(t_s: Array, second_s: float) -> float:
+    """`second_s` for a log that has room for a window behind what the filter needs, and for one of few rows; less for a short one of
+    many, as fast plants give."""
+    room = float(t_s[-1] - t_s[0]) / (decisions.SETTLE_S + WINDOW_S)
+    return min(second_s, room) if len(t_s) >= decisions.SHORT_ROWS else second_s
 
 
-def windows(t_s: Array, length_s: float = WINDOW_S) -> list[tuple[int, int]]:
-    """First row and row after the last of each window."""
-    number = np.floor((t_s - t_s[0]) / (length_s * _pace(t_s)) + 1e-9).astype(int)
+def windows(t_s: Array, second_s: float, length_s: float = WINDOW_S) -> list[tuple[int, int]]:
+    """First row and row after the last of each window, which lasts `length_s` of the plant's seconds."""
+    number = np.floor((t_s - t_s[0]) / (length_s * _pace(t_s, second_s)) + 1e-9).astype(int)
     edges = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(t_s)]
     return [(first, last) for first, last in pairwise(edges) if last - first > 1]
 

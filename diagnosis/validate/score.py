@@ -21,6 +21,7 @@ from diagnosis.validate.attainable import attainable, coarse_steps
 from diagnosis.validate.prediction import WINDOW_S, windows
 
 Array = NDArray[np.float64]
+# Ends of the stretches of a window that count as one horizon each, in the plant's own seconds.
 HORIZONS_S = (
     0.02,
     0.05,
@@ -30,7 +31,7 @@ HORIZONS_S = (
     0.5,
     0.75,
     WINDOW_S,
-)  # ends of the stretches of a window that count as one horizon each
+)
 DRAWS, SEED = 400, 11
 
 
@@ -68,11 +69,13 @@ def errors_of(case: Case, hypothesis: Hypothesis, read: Callable[[Hypothesis], S
     smooth = hypothesis  # what a coarse reading rounds is no error of the model
     if shown:
         smooth = hypothesis.with_effects({name: v for name, v in hypothesis.effects.items() if name not in shown})
-    squares, best = [], []
+    squares, best, second_s = [], [], case.second_s
     for flight, predicted in zip(case.flights, read(smooth), strict=True):
-        found = _by_horizon((predicted - flight.log.y) ** 2, flight.log.t_s)
+        found = _by_horizon((predicted - flight.log.y) ** 2, flight.log.t_s, second_s)
         squares.append(found)
-        best.append(np.broadcast_to(attainable(case, flight, hypothesis, HORIZONS_S), found.shape))
+        best.append(
+            np.broadcast_to(attainable(case, flight, hypothesis, np.multiply(HORIZONS_S, second_s)), found.shape)
+        )
     return Errors(np.concatenate(squares), _grid(case, hypothesis, shown), np.concatenate(best))
 
 
@@ -125,13 +128,13 @@ def _total(logs: Array) -> Array:
     return np.asarray(means.sum(axis=1))
 
 
-def _by_horizon(error: Array, t_s: Array) -> Array:
+def _by_horizon(error: Array, t_s: Array, second_s: float) -> Array:
     """Means (windows, horizons, outputs) of the rows (rows, outputs) of each window and horizon, NaN where one has none."""
-    spans, horizons = windows(t_s), len(HORIZONS_S)
+    spans, horizons = windows(t_s, second_s), len(HORIZONS_S)
     window = np.repeat(np.arange(len(spans)), [last - first for first, last in spans])
     rows = np.concatenate([np.arange(0), *(np.arange(first, last) for first, last in spans)])
     begins_s = t_s[np.array([first for first, _ in spans], dtype=int)[window]]
-    horizon = np.searchsorted(HORIZONS_S, t_s[rows] - begins_s - 1e-9)
+    horizon = np.searchsorted(np.multiply(HORIZONS_S, second_s), t_s[rows] - begins_s - 1e-9)
     inside = horizon < horizons
     rows, place = rows[inside], (window * horizons + horizon)[inside]
     known = np.isfinite(error[rows])

@@ -10,7 +10,7 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.agreement import agreements
 from diagnosis.validate.closed_loop import MODEL_VARIANTS, closed_loop
-from diagnosis.validate.prediction import windows
+from diagnosis.validate.prediction import WINDOW_S, windows
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable
 
@@ -22,10 +22,11 @@ BOOTSTRAP_DRAWS, BOOTSTRAP_SEED = 1000, 7
 class Predicted:
     """Readings of a hold-out log predicted by each of MODEL_VARIANTS: (rows, outputs), NaN where a row could not be predicted.
 
-    `variants` are the models that predicted.
+    `variants` are the models that predicted, `second_s` is that of their case.
     """
 
     name: str
+    second_s: float
     t_s: Array
     y: Array
     by: Mapping[str, Array]
@@ -41,7 +42,14 @@ def predict_all(
     """Predictions of every flight of `case` by each model in `variants`; `read` gives those of one, (rows, outputs) by flight."""
     found = {variant: read(hypothesis) for variant, hypothesis in variants.items()}
     return tuple(
-        Predicted(name, flight.log.t_s, flight.log.y, {variant: y[place] for variant, y in found.items()}, variants)
+        Predicted(
+            name,
+            case.second_s,
+            flight.log.t_s,
+            flight.log.y,
+            {variant: y[place] for variant, y in found.items()},
+            variants,
+        )
         for place, (name, flight) in enumerate(zip(names, case.flights, strict=True))
     )
 
@@ -68,6 +76,7 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
         rms_floor=_named(outputs, floor),
         fraction=float(fraction[0]) if fraction.size else None,
         fraction_ci95=interval if fraction.size else None,
+        window_s=WINDOW_S * case.second_s,
         agreement=agreements(outputs, [(entry.t_s, entry.y, entry.by) for entry in predicted]),
         closed_loop=closed_loop(case, [e.name for e in predicted], tables, predicted[0].variants)
         if any(tables)
@@ -81,7 +90,7 @@ def _squares(predicted: Sequence[Predicted], variant: str) -> Array:
     for entry in predicted:
         square = (entry.by[variant] - entry.y) ** 2
         held: NDArray[np.bool_] = np.asarray(np.isfinite(entry.y).any(axis=0))
-        for first, last in windows(entry.t_s):
+        for first, last in windows(entry.t_s, entry.second_s):
             means = _means(square[first:last])
             if held.any() and np.isfinite(means[held]).all():
                 found.append(np.where(held, means, np.nan))

@@ -71,8 +71,15 @@ FAMILIES = tuple(_families())
 @lru_cache(maxsize=64)
 def effects_for(model: Model) -> Mapping[str, Effect]:
     """Every effect whose place exists in `model`, the nominal one of a plant, by name; in the order in which they are added."""
-    effects = {effect.name: effect for family in FAMILIES for effect in family(model)}
+    effects = {effect.name: _at_pace(effect, model.second_s) for family in FAMILIES for effect in family(model)}
     return {name: replace(effect, twins=_present(effect.twins, effects)) for name, effect in effects.items()}
+
+
+def _at_pace(effect: Effect, second_s: float) -> Effect:
+    """The effect with bounds, references and starts of its times for a plant that takes so long for what others do in a second."""
+    return (
+        effect if second_s == 1.0 else replace(effect, parameters=tuple(p.at_pace(second_s) for p in effect.parameters))
+    )
 
 
 def _present(twins: Mapping[str, str], effects: Mapping[str, Effect]) -> Mapping[str, str]:

@@ -11,12 +11,17 @@ from records.errors import BadInput
 from records.plant import Equations, Plant
 from sim.equations.check import check_model
 from sim.equations.own_file import run_file
+from sim.equations.pace import at_its_pace
 from sim.model import Axis, Model
 from sim.plants import MODELS
 
 
 def nominal_model(plant: Plant) -> Model:
     """The equations without effects: the same object for the same plant. Raises BadInput, of a file of one's own with the line."""
+    return at_its_pace(_stated(plant), plant)
+
+
+def _stated(plant: Plant) -> Model:
     if plant.equations is not None:
         return _own(plant.equations)
     if plant.model not in MODELS:

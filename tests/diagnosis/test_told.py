@@ -37,7 +37,7 @@ def predicted(before: float, after: float) -> tuple[Predicted, ...]:
     t_s = 0.01 * np.arange(1000)
     sign = np.where(np.arange(1000) % 2, 1.0, -1.0)[:, None]
     by = {name: floor * size * sign for name, size in (("nominal", 9.0), ("before", before), ("after", after))}
-    return (Predicted("hold", t_s, np.zeros((1000, 1)), by, {}),)
+    return (Predicted("hold", 1.0, t_s, np.zeros((1000, 1)), by, {}),)
 
 
 def test_the_share_that_is_gone_is_of_what_lies_above_the_floor() -> None:

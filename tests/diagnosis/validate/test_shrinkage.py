@@ -16,7 +16,9 @@ def found(nominal: float, before: float, after: float) -> Predicted:
     """Readings missed by so many standard deviations of their noise, row by row to both sides."""
     side = NOISE * np.where(np.arange(len(FLIGHT.log.t_s)) % 2, 1.0, -1.0)[:, None]
     errors = dict(zip(MODEL_VARIANTS, (nominal, before, after), strict=True))
-    return Predicted("log", FLIGHT.log.t_s, FLIGHT.log.y, {k: FLIGHT.log.y + e * side for k, e in errors.items()}, {})
+    return Predicted(
+        "log", 1.0, FLIGHT.log.t_s, FLIGHT.log.y, {k: FLIGHT.log.y + e * side for k, e in errors.items()}, {}
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""How far a gap shrinks, as a page shows it: the four bars of the 1 s predictions, their agreement, and the loop closed again."""
+"""How far a gap shrinks, as a page shows it: the four bars of the predictions, their agreement, and the loop closed again."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -22,7 +22,7 @@ def stages(found: bool) -> tuple[str, str, str, str]:
 
 
 def shrinkage_sections(shrinkage: Shrinkage, found: bool, retuned: str = "") -> list[Section]:
-    """Predictions over 1 s, then the closed loop where it was flown; `retuned` is a sentence on what the re-tune did."""
+    """Predictions over a window, then the closed loop where it was flown; `retuned` is a sentence on what the re-tune did."""
     sections = [_predictions(shrinkage, found, retuned)]
     if shrinkage.closed_loop is not None:
         sections.append(_closed_loop(shrinkage.closed_loop, found))
@@ -32,8 +32,8 @@ def shrinkage_sections(shrinkage: Shrinkage, found: bool, retuned: str = "") -> 
 def _predictions(shrinkage: Shrinkage, found: bool, retuned: str) -> Section:
     purpose = "to find the effect" if found else "to re-tune"
     sentences = [
-        "Errors of free-running predictions over windows of 1 s, of a log shorter than 3 s over its last third, on logs that were "
-        f"not used {purpose}. "
+        f"Errors of free-running predictions over windows of {shrinkage.window_s:g} s, of a log shorter than three of them over its "
+        f"last third, on logs that were not used {purpose}. "
         "The lower a bar, the better; below the noise floor noise decides.",
         "Re-tuned means that parameters moved within what the plant file states of them: that is no gap.",
         *([retuned] if retuned else []),

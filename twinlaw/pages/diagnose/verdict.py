@@ -9,7 +9,15 @@ from records.text.units import plain_unit
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
-from twinlaw.pages.diagnose.words import dependence_in_words, doubts_in_words, listed, missed_most, percent, words
+from twinlaw.pages.diagnose.words import (
+    dependence_in_words,
+    doubts_in_words,
+    listed,
+    missed_most,
+    percent,
+    window,
+    words,
+)
 from twinlaw.pages.page import as_sentence
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
@@ -30,13 +38,17 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 def _plant_sentence(diagnosis: Diagnosis) -> str:
     missed = missed_most(diagnosis)
     if diagnosis.verdict != "gap" and diagnosis.verdict_reason in SMALL:
-        rest = "" if missed is None else f" The rest is noise to the model: predictions over a second miss {missed}."
+        rest = (
+            ""
+            if missed is None
+            else f" The rest is noise to the model: predictions over {window(diagnosis)} miss {missed}."
+        )
         return f"{_NOT_TOLD[diagnosis.verdict]}. {reason_in_words(diagnosis)}{rest}"
     if diagnosis.verdict == "no gap":
         tuned = " once its parameters are re-tuned within what it states of them" if lowered(diagnosis) else ""
         if missed is None:
             return f"The plant file explains these logs{tuned}: nothing is missing that they could show."
-        yet = f"nothing that they could show is missing, yet predictions over a second miss {missed}"
+        yet = f"nothing that they could show is missing, yet predictions over {window(diagnosis)} miss {missed}"
         return f"The plant file explains these logs{tuned}, noise apart: {yet}."
     if diagnosis.verdict == "cannot tell":
         return "These logs hold too little motion to tell whether the plant file lacks anything."

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from records.diagnosis import Diagnosis
 from records.reasons import Decision
 from twinlaw.cli import console
+from twinlaw.pages.diagnose.words import window
 from twinlaw.pages.page import Section, Table
 
 SMALL = (
@@ -19,8 +20,8 @@ _REASONS = {
     "too_little_seen": "Most effects of the library would go unseen in these logs, so that nothing shows in them says little.",
     "yielding_explains": "Axes that creep or give near rest, as dry friction does, explain what looked like a gap.",
     "unexplained": "What shows beyond noise is small, and neither an effect of sure size nor other parameters explain it.",
-    "too_small": "What would explain the rest brings predictions over a second hardly closer, so none of it is told.",
-    "too_unsure": "What would explain the rest may bring predictions over a second closer, but not surely: more logs would tell.",
+    "too_small": "What would explain the rest brings predictions over {window} hardly closer, so none of it is told.",
+    "too_unsure": "What would explain the rest may bring predictions over {window} closer, but not surely: more logs would tell.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",
     "parameters_alone": "Other values of the plant's own parameters are the likeliest explanation.",
     "named_not_added": "The likeliest effect does not predict the hold-out logs better, so the model stays without it.",
@@ -30,7 +31,7 @@ _REASONS = {
 
 def reason_in_words(diagnosis: Diagnosis) -> str:
     """What the exit that was taken means; empty where the file names none."""
-    return _REASONS.get(diagnosis.verdict_reason or "", "")
+    return _REASONS.get(diagnosis.verdict_reason or "", "").format(window=window(diagnosis))
 
 
 def why_section(diagnosis: Diagnosis) -> Section | None:

@@ -154,12 +154,18 @@ def _width(effects: Mapping[str, Effect], name: str, symbol: str) -> float:
 
 
 def misfits(diagnosis: Diagnosis) -> dict[str, float]:
-    """By output, the error over a second of the logs held out of the plant that is handed on, over what its sensor leaves."""
+    """By output, the error of predictions over a window of the logs held out, over what the output's sensor leaves."""
     shrinkage = diagnosis.shrinkage
     if shrinkage is None:
         return {}
     floors = shrinkage.rms_floor
     return {name: rms / floors[name] for name, rms in shrinkage.rms_after.items() if floors[name]}
+
+
+def window(diagnosis: Diagnosis) -> str:
+    """How long a prediction runs, in words: a second, but on a plant that moves slower."""
+    window_s = 1.0 if diagnosis.shrinkage is None else diagnosis.shrinkage.window_s
+    return "a second" if window_s == 1.0 else f"{window_s:g} s"
 
 
 def missed_most(diagnosis: Diagnosis) -> str | None:
@@ -177,7 +183,7 @@ def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
         usual = (
             "what remains is as small as on a rig that is as the plant file states, with its sensors"
             if missed is None
-            else f"no more shows than chance gives, yet predictions over a second of the logs held out miss {missed}"
+            else f"no more shows than chance gives, yet predictions over {window(diagnosis)} of the logs held out miss {missed}"
         )
         return usual if p >= USUAL else f"{usual}: {percent(p)} of rigs as the plant file states show as much"
     seldom = (
@@ -187,4 +193,4 @@ def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
         return seldom
     if missed is None:
         return f"something is there, too small to count, although {seldom}"
-    return f"something is there that nothing known here brings closer: predictions over a second miss {missed}, and {seldom}"
+    return f"something is there that nothing known here brings closer: predictions over {window(diagnosis)} miss {missed}, and {seldom}"
