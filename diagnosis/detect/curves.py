@@ -15,8 +15,18 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.forms import REST
 from diagnosis.detect.linearisation import Linearisation
-from diagnosis.detect.signals import Quantity, Signals, angle_names, rotor_name, signals, through
+from diagnosis.detect.signals import (
+    Quantity,
+    Signals,
+    angle_names,
+    input_name,
+    measured,
+    rotor_name,
+    signals,
+    through,
+)
 from diagnosis.hypothesis.case import Case
+from records.text.units import stem
 from sim.edits import speed_name
 
 Array = NDArray[np.float64]
@@ -128,18 +138,19 @@ def _basis(seen: Array, turns: bool) -> Callable[[Array], Array] | None:
 
 def _terms(case: Case, s: Signals) -> Iterator[_Term]:
     for axis in case.library.bound.model.axes:
-        if axis.name in s.angle:
-            yield from _on_axis(case, axis.name, str(axis.velocity), s)
+        yield from _on_axis(case, axis.name, str(axis.velocity), s)
     for rotor in s.rotor:
         yield from _on_drive(case, rotor, s)
         yield from _on_thrust(case, rotor, s)
+    yield from _on_inputs(case, s)
+    yield from _on_states(case, s)
     yield from _on_sensors(case, s)
 
 
 def _on_axis(case: Case, axis: str, velocity: str, s: Signals) -> Iterator[_Term]:
     """Torques by any signal alone, and by one times the axis' own speed or its sign; an inertia that another angle changes. What a rotor's
     speed does alone to the axis that it pushes is its thrust."""
-    q, w, v = _angle(case, axis), _speed(case, axis), s.speed[axis]
+    has_angle, q, w, v = axis in s.angle, _angle(case, axis), _speed(case, axis), s.speed[axis]
     alone, sign = np.ones_like(v), np.tanh(v / REST)
     by_speed = {w.name: (w, v), f"sgn {w.name}": (Quantity(f"sgn({w.name})", ""), sign)}
     target, inertia = case.library.states.index(velocity), s.inertia[axis]
@@ -151,7 +162,8 @@ def _on_axis(case: Case, axis: str, velocity: str, s: Signals) -> Iterator[_Term
         times, factor = by_speed[text]
         return _Term(axis, f"torque({depends.name}, {text}) on {axis}", target, depends, x, factor / inertia, times)
 
-    yield torque(q.name, q, s.angle[axis])
+    if has_angle:
+        yield torque(q.name, q, s.angle[axis])
     yield torque(w.name, w, v, True)
     for rotor, speed in s.rotor.items():
         o = _rotor(case, rotor)
@@ -159,7 +171,8 @@ def _on_axis(case: Case, axis: str, velocity: str, s: Signals) -> Iterator[_Term
             yield torque(o.name, o, speed, True)
         yield torque(f"d{o.name}/dt", _rate(o), np.gradient(speed, s.t))
         yield from (by(text, o, np.abs(speed)) for text in by_speed)
-    yield from (by(text, q, s.angle[axis]) for text in by_speed)
+    if has_angle:
+        yield from (by(text, q, s.angle[axis]) for text in by_speed)
     for other in (name for name in s.angle if name != axis):
         p, p_dot = _angle(case, other), _speed(case, other)
         yield torque(p.name, p, s.angle[other])
@@ -180,9 +193,35 @@ def _on_drive(case: Case, rotor: str, s: Signals) -> Iterator[_Term]:
         if entry.drive is not None:
             yield replace(by_input, class_text=f"limit({own.name}, {o.name})", x=u - s.rotor[rotor])
             yield replace(by_input, place=rotor, class_text=f"torque({o.name}) on rotor", depends=o, x=s.rotor[rotor])
-        for other in (name for name in s.u if name != place):
-            beside = _input(case, other)
-            yield _Term(place, f"{own.name}, {beside.name}", target, beside, np.abs(s.u[other]), u / inertia, own)
+        yield from _by_others(case, place, target, u / inertia, s)
+
+
+def _by_others(case: Case, place: str, target: int, factor: Array, s: Signals) -> Iterator[_Term]:
+    """What of an input another may take away; `factor` is what the input does to the target."""
+    own = _input(case, place)
+    for other in (name for name in s.u if name != place):
+        beside = _input(case, other)
+        yield _Term(place, f"{own.name}, {beside.name}", target, beside, np.abs(s.u[other]), factor, own)
+
+
+def _on_inputs(case: Case, s: Signals) -> Iterator[_Term]:
+    """What an input that no rotor takes does by itself, by its change, and by another."""
+    for place, (state, slope) in s.reach.items():
+        own, target = _input(case, place), case.library.states.index(state)
+        by_input = _Term(place, own.name, target, own, s.u[place], slope, turns=True)
+        yield by_input
+        yield replace(by_input, class_text=f"change of {own.name}", x=np.append(0.0, np.diff(s.u[place])))
+        yield from _by_others(case, place, target, s.u[place] * slope, s)
+
+
+def _on_states(case: Case, s: Signals) -> Iterator[_Term]:
+    """What the rate of a measured state that does not move does by itself, and by an input times it."""
+    for state, x in s.state.items():
+        own, target = _state(case, state), case.library.states.index(state)
+        yield _Term(own.name, f"rate({own.name}) of {own.name}", target, own, x, np.ones_like(x), turns=True)
+        for place, u in s.u.items():
+            beside = _input(case, place)
+            yield _Term(own.name, f"rate({beside.name}, {own.name}) of {own.name}", target, beside, u, x, own)
 
 
 def _on_thrust(case: Case, rotor: str, s: Signals) -> Iterator[_Term]:
@@ -247,6 +286,11 @@ def _rotor(case: Case, rotor: str) -> Quantity:
     return Quantity(rotor_name(case, rotor), unit, place.speed_size)
 
 
+def _state(case: Case, state: str) -> Quantity:
+    place = measured(case.library.bound.model)[state]
+    return Quantity(stem(state), place.unit, place.size)
+
+
 def _place_of(case: Case, rotor: str) -> str:
     """The place of the input that drives a rotor."""
     places = case.library.bound.model.places
@@ -255,4 +299,4 @@ def _place_of(case: Case, rotor: str) -> str:
 
 def _input(case: Case, place: str) -> Quantity:
     entry = case.library.bound.model.places.inputs[place]
-    return Quantity(str(entry.variable).rsplit("_", 1)[0], entry.unit, entry.size)
+    return Quantity(input_name(case, place), entry.unit, entry.size)

@@ -8,9 +8,20 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.shapes import SQUARE, Shapes, beyond, follower, jitter, plain, shaped, waves_a_turn
-from diagnosis.detect.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals, through
+from diagnosis.detect.signals import (
+    Signals,
+    angle_names,
+    in_units,
+    input_name,
+    rotor_name,
+    rotor_unit,
+    signals,
+    state_unit,
+    through,
+)
 from diagnosis.detect.waves import likely_waves
 from diagnosis.hypothesis.case import Case
+from records.text.units import stem
 from sim.edits import speed_name
 
 Array = NDArray[np.float64]
@@ -51,14 +62,14 @@ Row = tuple[str, str, str, int, Array]
 def _forms(case: Case, s: Signals) -> Iterator[Row]:
     yield from _axis_forms(case, s)
     yield from _drive_forms(case, s)
+    yield from _input_forms(case, s)
+    yield from _state_forms(case, s)
     yield from _sensor_forms(case, s)
 
 
 def _axis_forms(case: Case, s: Signals) -> Iterator[Row]:
     library, model = case.library, case.library.bound.model
     for axis in model.axes:
-        if axis.name not in s.angle:
-            continue
         target = library.states.index(str(axis.velocity))
         scale = s.h / s.inertia[axis.name]
         for depends, shape, value in _torques(case, axis.name, s):
@@ -70,19 +81,15 @@ def _axis_forms(case: Case, s: Signals) -> Iterator[Row]:
 def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Array]]:
     """What a torque may depend on, with some shapes for each."""
     names = angle_names(case)
-    a, v = s.angle[axis], s.speed[axis]
-    q, w, sign = names[axis], _speed_name(case, axis), np.tanh(v / REST)
-    unit = _speed_unit(case, axis)
-    angles: Shapes = {"sin({x})": np.sin, "{x}": lambda x: x, "{x}^2": np.square}
-    doubled = waves_a_turn((2,), ("sin({count} {x})",))
-    yield from shaped(q, q, a, {**angles, **doubled, "{x}^3": lambda x: x**3, **waves_a_turn(range(3, 17))})
+    v, w, unit = s.speed[axis], _speed_name(case, axis), _speed_unit(case, axis)
+    sign = np.tanh(v / REST)
+    if axis in s.angle:
+        yield from _by_angle(names[axis], s.angle[axis])
     yield from shaped(w, unit, v, {SQUARE: lambda x: x * np.abs(x), "{x}^3": lambda x: x**3})
     rubs: Shapes = {"sgn({x})": lambda _: sign, "sgn({x}) exp(-|{x}| / 0.1)": lambda x: sign * np.exp(-np.abs(x) / 0.1)}
     yield from shaped(f"sgn {w}", unit, v, {**rubs, "|{x}|": np.abs})
-    yield f"{q}, sgn {w}", f"{q} sgn({unit})", a * sign
-    yield f"{q}, sgn {w}", f"bristles of 0.2 under {q}", follower(a, 0.2)
-    for text, shape in ((q, a), (f"{q}^2", a**2), (f"sin({q})", np.sin(a)), (f"cos({q})", np.cos(a))):
-        yield f"{q}, {w}", f"{text} {unit}", shape * v
+    if axis in s.angle:
+        yield from _by_angle_and_speed(names[axis], s.angle[axis], w, unit, v, sign)
     time = s.t / s.t[-1]
     yield from shaped("t", in_units("t", s.t[-1]), time, {"{x}": lambda x: x, "{x}^2": np.square})
     for rate in s.waves.get(axis, ()):
@@ -93,6 +100,21 @@ def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Arra
     for other in s.angle:
         if other != axis:
             yield from _between((names[other], _speed_name(case, other)), s.angle[other], s.speed[other], unit, v)
+
+
+def _by_angle(q: str, a: Array) -> Iterator[tuple[str, str, Array]]:
+    """What of a torque may depend on the axis' own angle alone."""
+    angles: Shapes = {"sin({x})": np.sin, "{x}": lambda x: x, "{x}^2": np.square}
+    doubled = waves_a_turn((2,), ("sin({count} {x})",))
+    yield from shaped(q, q, a, {**angles, **doubled, "{x}^3": lambda x: x**3, **waves_a_turn(range(3, 17))})
+
+
+def _by_angle_and_speed(q: str, a: Array, w: str, unit: str, v: Array, sign: Array) -> Iterator[tuple[str, str, Array]]:
+    """What of a torque may depend on the axis' own angle and speed."""
+    yield f"{q}, sgn {w}", f"{q} sgn({unit})", a * sign
+    yield f"{q}, sgn {w}", f"bristles of 0.2 under {q}", follower(a, 0.2)
+    for text, shape in ((q, a), (f"{q}^2", a**2), (f"sin({q})", np.sin(a)), (f"cos({q})", np.cos(a))):
+        yield f"{q}, {w}", f"{text} {unit}", shape * v
 
 
 def _from_rotors(case: Case, s: Signals, w: str, unit: str, v: Array, sign: Array) -> Iterator[tuple[str, str, Array]]:
@@ -133,27 +155,16 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
     for name, rotor in places.rotors.items():
         place = next((key for key, entry in places.inputs.items() if entry.variable == rotor.variable), "")
         u, time = s.u[place], s.t / s.t[-1]
-        text = str(rotor.variable).rsplit("_", 1)[0]
+        text = input_name(case, place)
         x = in_units(text, places.inputs[place].size)
         speed, o, over = s.rotor[name], rotor_name(case, name), rotor_unit(case, name)
-        changes = np.append(0.0, np.diff(u))
         ways = [(target, s.h / inertia) for target, inertia in through(case, name, s)]
         for target, gain in ways:
-            known: Shapes = {"sgn({x})": lambda x: np.tanh(x / 0.03), "|{x}|": np.abs, SQUARE: lambda x: x * np.abs(x)}
-            for _, shape, value in shaped(text, x, u, known):
-                yield place, text, shape, target, value * gain
-            yield place, text, f"change of {x} from row to row", target, changes * gain
-            yield place, text, f"size of the change of {x} from row to row", target, jitter(u) * gain
-            for shape, value in beyond(x, u):
-                yield place, f"limit({text})", shape, target, value * gain
+            yield from _by_input(case, place, target, gain, s)
             if rotor.drive is not None:
                 for shape, value in beyond(f"{x} - {over}", u - speed):
                     yield place, f"limit({text}, {o})", shape, target, value * gain
-            for other, value in s.u.items():
-                if other != place:
-                    beside = str(places.inputs[other].variable).rsplit("_", 1)[0]
-                    size = f"|{in_units(beside, places.inputs[other].size)}|"
-                    yield place, f"{text}, {other}", f"{x} {size}", target, u * np.abs(value) * gain
+            yield from _by_others(case, place, target, gain, s)
             yield name, f"gain(t) of {text}", f"{in_units('t', s.t[-1])} {x}", target, u * time * gain
         rubs: Shapes = {
             "sgn({x})": lambda x: np.tanh(x / 0.02),
@@ -165,6 +176,58 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
                 yield name, f"torque({o}) on rotor", shape, target, value * gain
         for axis in rotor.thrusts:
             yield from _thrust_forms(case, name, axis, s)
+
+
+def _by_input(case: Case, place: str, target: int, gain: Array, s: Signals) -> Iterator[Row]:
+    """What an input may do by itself, by its change, and beyond a limit."""
+    u, text = s.u[place], input_name(case, place)
+    x = in_units(text, case.library.bound.model.places.inputs[place].size)
+    known: Shapes = {"sgn({x})": lambda x: np.tanh(x / 0.03), "|{x}|": np.abs, SQUARE: lambda x: x * np.abs(x)}
+    for _, shape, value in shaped(text, x, u, known):
+        yield place, text, shape, target, value * gain
+    yield place, text, f"change of {x} from row to row", target, np.append(0.0, np.diff(u)) * gain
+    yield place, text, f"size of the change of {x} from row to row", target, jitter(u) * gain
+    for shape, value in beyond(x, u):
+        yield place, f"limit({text})", shape, target, value * gain
+
+
+def _by_others(case: Case, place: str, target: int, gain: Array, s: Signals) -> Iterator[Row]:
+    """What of an input another may take away."""
+    inputs, text = case.library.bound.model.places.inputs, input_name(case, place)
+    x = in_units(text, inputs[place].size)
+    for other, value in s.u.items():
+        if other != place:
+            size = f"|{in_units(input_name(case, other), inputs[other].size)}|"
+            yield place, f"{text}, {other}", f"{x} {size}", target, s.u[place] * np.abs(value) * gain
+
+
+def _input_forms(case: Case, s: Signals) -> Iterator[Row]:
+    """What an input that no rotor takes may do by itself, with another and in time."""
+    library = case.library
+    for place, (state, slope) in s.reach.items():
+        entry, text = library.bound.model.places.inputs[place], input_name(case, place)
+        target, gain, time = library.states.index(state), s.h * slope, s.t / s.t[-1]
+        yield from _by_input(case, place, target, gain, s)
+        yield from _by_others(case, place, target, gain, s)
+        shape = f"{in_units('t', s.t[-1])} {in_units(text, entry.size)}"
+        yield place, f"gain(t) of {text}", shape, target, s.u[place] * time * gain
+
+
+def _state_forms(case: Case, s: Signals) -> Iterator[Row]:
+    """What the rate of a measured state that does not move may depend on: on itself, on time, on itself and an input."""
+    library = case.library
+    for state, x in s.state.items():
+        name, unit, target, time = stem(state), state_unit(case, state), library.states.index(state), s.t / s.t[-1]
+        own: Shapes = {"1": np.ones_like, SQUARE: lambda x: x * np.abs(x), "{x}^3": lambda x: x**3}
+        for _, shape, value in shaped(name, unit, x, own):
+            yield name, f"rate({name}) of {name}", shape, target, value * s.h
+        for _, shape, value in shaped("t", in_units("t", s.t[-1]), time, {"{x}": lambda x: x, "{x}^2": np.square}):
+            yield name, f"rate(t) of {name}", shape, target, value * s.h
+        yield name, f"rate(t, {name}) of {name}", f"{in_units('t', s.t[-1])} {unit}", target, time * x * s.h
+        for place, u in s.u.items():
+            beside = input_name(case, place)
+            size = in_units(beside, library.bound.model.places.inputs[place].size)
+            yield name, f"rate({name}, {beside}) of {name}", f"{unit} {size}", target, x * u * s.h
 
 
 def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row]:
@@ -198,12 +261,16 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
     library, model = case.library, case.library.bound.model
     names = angle_names(case)
     for place, sensor in model.places.sensors.items():
+        state, target = str(model.outputs[sensor.output]), len(library.states) + library.outputs.index(sensor.output)
+        if state in s.state:
+            name, unit = stem(state), state_unit(case, state)
+            for _, shape, value in shaped(name, unit, s.state[state], {"{x}": lambda x: x, "{x}^2": np.square}):
+                yield place, f"output({name}) of {name}", shape, target, value
         axis = next((name for name, entry in model.places.axes.items() if entry.angle == sensor.output), "")
         if axis not in s.angle:
             continue
         a, v, q = s.angle[axis], s.speed[axis], names[axis]
         w, unit = _speed_name(case, axis), _speed_unit(case, axis)
-        target = len(library.states) + library.outputs.index(sensor.output)
         for _, shape, value in shaped(q, q, a, {"{x}": lambda x: x, "{x}^2": np.square, **waves_a_turn(range(3, 33))}):
             yield place, f"output({q}) of {q}", shape, target, value
         yield place, f"output({w}) of {q}", unit, target, v

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.case import Case
+from records.text.units import stem
 from sim.model import TIME, Model
+from sim.places import SensorPlace
 
 Array = NDArray[np.float64]
 
@@ -26,8 +28,9 @@ class Quantity:
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """What a flight went through, by instant: angles and speeds by axis, rotor speeds, inputs, relative inertia by axis, time since the
-    logs begin, waves."""
+    """What a flight went through, by instant: angles by axis that has one, speeds by axis, rotor speeds, inputs, relative inertia by axis,
+    what is measured and is no motion by state, time since the logs begin, waves. `reach` has, of an input that no rotor takes, the
+    state that it reaches and what its size does to the rate of that."""
 
     t: Array
     h: Array
@@ -37,6 +40,8 @@ class Signals:
     thrust: Mapping[tuple[str, str], Array]
     inertia: Mapping[str, Array]
     u: Mapping[str, Array]
+    state: Mapping[str, Array]
+    reach: Mapping[str, tuple[str, Array]]
     waves: Mapping[str, tuple[float, ...]]
 
 
@@ -49,11 +54,11 @@ def signals(linearisation: Linearisation, flight: int, waves: Mapping[str, tuple
     def value(expression: sympy.Expr) -> Array:
         return value_of(model, expression, filter_input.t_s, x, filter_input.u, library.bound.p)
 
-    axes = {axis.name: axis for axis in model.axes if axis.position is not None}
+    axes = {axis.name: axis for axis in model.axes}
     return Signals(
         t=filter_input.t_s - linearisation.case.begins_s,
         h=np.append(np.diff(filter_input.t_s), 0.0),
-        angle={name: value(axis.position) for name, axis in axes.items()},
+        angle={name: value(axis.position) for name, axis in axes.items() if axis.position is not None},
         speed={name: value(axis.velocity) / model.places.axes[name].speed_size for name, axis in axes.items()},
         rotor={name: value(rotor.speed) / rotor.speed_size for name, rotor in model.places.rotors.items()},
         thrust={
@@ -63,8 +68,34 @@ def signals(linearisation: Linearisation, flight: int, waves: Mapping[str, tuple
         },
         inertia={name: _relative(value(axis.inertia)) for name, axis in axes.items()},
         u={name: value(entry.variable) / entry.size for name, entry in model.places.inputs.items()},
+        state={state: value(sympy.Symbol(state, real=True)) / place.size for state, place in measured(model).items()},
+        reach={
+            name: (found[0], value(found[1]) * entry.size)
+            for name, entry in model.places.inputs.items()
+            if (found := _reached(model, entry.variable)) is not None
+        },
         waves=waves,
     )
+
+
+@lru_cache(maxsize=64)
+def measured(model: Model) -> dict[str, SensorPlace]:
+    """The plant's own states that an output is, but for what moves, axes and rotors: currents, temperatures, levels; with the sensor."""
+    moving = {str(state) for axis in model.axes for state in (axis.position, axis.velocity)}
+    moving |= {str(rotor.speed) for rotor in model.places.rotors.values()}
+    read = {str(model.outputs[sensor.output]): sensor for sensor in model.places.sensors.values()}
+    return {state: read[state] for state in map(str, model.states) if state in read and state not in moving}
+
+
+@lru_cache(maxsize=64)
+def _reached(model: Model, variable: sympy.Symbol) -> tuple[str, sympy.Expr] | None:
+    """The first state whose rate an input changes that no rotor takes, an axis' velocity before others, and its slope by the input."""
+    if model.places.driven_by(variable):
+        return None
+    rates = {str(axis.velocity): axis.torque / axis.inertia for axis in model.axes}
+    rates |= {str(state): rate for state, rate in model.rates.items()}
+    slopes = ((state, sympy.diff(rate, variable)) for state, rate in rates.items())
+    return next(((state, slope) for state, slope in slopes if slope != 0), None)
 
 
 def value_of(model: Model, expression: sympy.Expr, t_s: Array, x: Array, u: Array, p: Array) -> Array:
@@ -98,6 +129,16 @@ def in_units(name: str, size: float) -> str:
 def rotor_unit(case: Case, rotor: str) -> str:
     """A rotor's speed in units of its size, as text."""
     return in_units(rotor_name(case, rotor), case.library.bound.model.places.rotors[rotor].speed_size)
+
+
+def input_name(case: Case, place: str) -> str:
+    """An input's short name (u_M)."""
+    return stem(str(case.library.bound.model.places.inputs[place].variable))
+
+
+def state_unit(case: Case, state: str) -> str:
+    """What is measured in units of its size, as text."""
+    return in_units(stem(state), measured(case.library.bound.model)[state].size)
 
 
 def angle_names(case: Case) -> dict[str, str]:

@@ -24,7 +24,7 @@ static void follow(filter_state *at, const substep *part)
         for (int m = 0; m < N; m++)
             if (m != i && A_HAS[i][m])
                 changed += A[i * N + m] * (at->body.x[m] - x[m]);
-        at->body.x[i] = w.kept * x[i] + (w.first + w.last) * g + w.last * changed;
+        at->body.x[i] = w.kept * x[i] + (w.first + w.last) * g + w.last * changed + added_to(at, part, i);
     }
 }
 

@@ -31,7 +31,7 @@ static void add_to_mean(filter_state *at, const substep *part)
         return;
     double added[N];
     for (int i = 0; i < N; i++)
-        added[i] = at->request->added[part->step * N + i] * part->share;
+        added[i] = added_to(at, part, i);
     for (int a = 0; a < N_AXES; a++)
         if (part->held[a])
             added[AXIS_VELOCITY[a]] = 0.0;

@@ -21,6 +21,12 @@ typedef struct {
     bool held[AXES], rests[AXES]; /* axes whose mean stays; those of them that are sure to */
 } substep;
 
+/* What acts beside the equations adds to a state over it. */
+static double added_to(const filter_state *at, const substep *part, int i)
+{
+    return at->request->added ? at->request->added[part->step * N + i] * part->share : 0.0;
+}
+
 /* The rate of the fastest state, and of the fastest two that swing against each other; but for noise with a memory and states that follow,
  * which move exactly. */
 static double fastest_rad_s(const filter_state *at)

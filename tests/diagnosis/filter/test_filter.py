@@ -28,7 +28,7 @@ from sim.simulate import Noise, simulate
 from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
 from tests.diagnosis.nominal import nominal_fit
-from tests.own_plants import OwnPlant
+from tests.own_plants import HEATER, OwnPlant
 from tests.plants import stated_table
 from tests.soak import sampled
 from tests.test_project import ROOT
@@ -281,6 +281,23 @@ def test_what_is_added_to_a_state_is_what_an_input_would_add(case: Case, settled
     read[:, 0] -= outputs[:, 0]
     moved = _with(case, settled, added=Added(filter_input.t_s, 0.0 * states, outputs))
     assert np.array_equal(moved.w, _with(case, settled, y=read).w, equal_nan=True)
+
+
+def test_what_is_added_to_a_state_that_follows_others_is_what_an_input_would_add(tmp_path: Path) -> None:
+    # T' = (heat - G T) / C: ten watts more, or 10 / C beside the equations, which the exact steps of such a state must not lose.
+    bound = bind(load_plant(HEATER.write(tmp_path, "body")))
+    rng, t_s = np.random.default_rng(3), 0.2 * np.arange(1500)
+    heat, T = np.repeat(rng.uniform(10.0, 50.0, 15), 100), np.zeros(1500)
+    for row in range(1, 1500):
+        T[row] = T[row - 1] + 0.2 * (heat[row - 1] - 0.8 * T[row - 1]) / 20.0
+    log = RunLog(log_columns(bound.model), 0.2, "open", t_s, heat[:, None], np.round(T, 2)[:, None])
+    case = make_case(effect_library(bound), [log])
+    plain = nominal_hypothesis(case, -1.5)
+    added = Added(t_s, (10.0 * t_s / 20.0)[:, None], np.zeros((1500, 1)))
+    raised, pushed = _with(case, plain, u=heat[:, None] + 10.0), _with(case, plain, added=added)
+    change = np.nan_to_num(raised.w - _with(case, plain).w)
+    assert np.abs(change).max() > 0.1
+    assert np.allclose(np.nan_to_num(pushed.w - _with(case, plain).w), change, atol=0.02 * np.abs(change).max())
 
 
 def _with(case: Case, hypothesis: Hypothesis, **changes: Any) -> Pass:

@@ -55,7 +55,10 @@ OTHER_THINGS: Mapping[str, tuple[str, set[str]]] = {
     "twinlaw/command.py": ("modes of a file", {"r", "w"}),
     "twinlaw/pages/diagnose/answers.py": ("a heading", {"phase"}),
     "twinlaw/pages/diagnose/why.py": ("a heading", {"limit"}),
-    "twinlaw/pages/diagnose/words.py": ("what of a rig changes, as classes say it", {"gain", "limit", "torque"}),
+    "twinlaw/pages/diagnose/words.py": (
+        "what of a rig changes, as classes say it",
+        {"gain", "limit", "rate", "torque"},
+    ),
     "twinlaw/pages/identify/report.py": ("an experiment", {"gravity"}),
     "twinlaw/pages/run/design_page.py": ("rows of a controller's table", {"p", "q"}),
     "twinlaw/pages/run/design.py": ("headings", {"delay", "phase"}),

@@ -31,6 +31,7 @@ _CLASSES = {
     "mode": "a vibration",
     "limit": "a limit",
     "inertia": "an inertia",
+    "rate": "a rate of change",
 }
 SUM_OF = "sum of "  # before the speed of a way that an error grows with
 _SIGNALS = {"1": "nothing (it is constant)", "t": "the time"}
