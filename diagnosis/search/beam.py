@@ -101,7 +101,7 @@ def first_fits(
 def alone(case: Case, first: FirstFits) -> Alone:
     """Fit single effects to their end, from where they begin."""
     found: dict[frozenset[str], FittedHypothesis] = {}
-    _end(case, first.begun, found, first.nominal)
+    end(case, first.begun, found, first.nominal)
     keep_better(found, first.found.values())
     if found:
         fit_twins(case, found, _best(found))
@@ -125,7 +125,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown, worth = _grown(case, best, names, worth)
-        if not best or not _end(case, first_of_each(case, grown, found), found, best[0]):
+        if not best or not end(case, first_of_each(case, grown, found), found, best[0]):
             break
         exchange(case, found, worth)
         shrink(case, found)
@@ -303,7 +303,17 @@ def first_of_each(
     return list(firsts.values())
 
 
-def _end(
+def worth_ending(begun: Sequence[FittedHypothesis], known: FittedHypothesis) -> list[FittedHypothesis]:
+    """What gains a fair share of the most that any gains over what is `known`. Where none gains, the best and what is near it: they have
+    the noise of what they grew from, as that still lacked what they brought, and what is known has its own."""
+    best, first = max(entry.evidence for entry in begun), known.evidence
+    if best > first:
+        return [entry for entry in begun if entry.evidence - first >= decisions.PROMISED_SHARE * (best - first)]
+    near = [entry for entry in begun if entry.evidence > best - decisions.PLAIN_TO_SEE]
+    return sorted(near, key=lambda entry: -entry.evidence)[: decisions.NEXT]
+
+
+def end(
     case: Case,
     begun: Sequence[FittedHypothesis],
     found: dict[frozenset[str], FittedHypothesis],
@@ -312,12 +322,11 @@ def _end(
     """Fit those to the end that gain most over what is `known`; whether anything was added to what is `found`."""
     if not begun:
         return False
-    best, first = max(entry.evidence for entry in begun), known.evidence
-    good = [entry for entry in begun if entry.evidence - first >= decisions.PROMISED_SHARE * (best - first)]
+    good = worth_ending(begun, known)
     ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
     ends = thread_map(lambda fitted: in_all_logs(case, fitted), ends)
     done = sorted(ends, key=lambda entry: -entry.evidence)
-    found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})
+    keep_better(found, [*begun, *done])
     strayed = [e for e in done[: decisions.NEXT] if is_astray(e.fit.hypothesis, decisions.ASTRAY)]
     keep_better(found, thread_map(lambda entry: once_more(case, entry), strayed))
     return True
