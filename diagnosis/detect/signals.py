@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.case import Case
+from diagnosis.library.driven import driven
 from records.text.units import stem
 from sim.model import TIME, Model
 from sim.places import SensorPlace
@@ -72,7 +73,7 @@ def signals(linearisation: Linearisation, flight: int, waves: Mapping[str, tuple
         reach={
             name: (found[0], value(found[1]) * entry.size)
             for name, entry in model.places.inputs.items()
-            if (found := _reached(model, entry.variable)) is not None
+            if not model.places.driven_by(entry.variable) and (found := driven(model, entry.variable)) is not None
         },
         waves=waves,
     )
@@ -85,17 +86,6 @@ def measured(model: Model) -> dict[str, SensorPlace]:
     moving |= {str(rotor.speed) for rotor in model.places.rotors.values()}
     read = {str(model.outputs[sensor.output]): sensor for sensor in model.places.sensors.values()}
     return {state: read[state] for state in map(str, model.states) if state in read and state not in moving}
-
-
-@lru_cache(maxsize=64)
-def _reached(model: Model, variable: sympy.Symbol) -> tuple[str, sympy.Expr] | None:
-    """The first state whose rate an input changes that no rotor takes, an axis' velocity before others, and its slope by the input."""
-    if model.places.driven_by(variable):
-        return None
-    rates = {str(axis.velocity): axis.torque / axis.inertia for axis in model.axes}
-    rates |= {str(state): rate for state, rate in model.rates.items()}
-    slopes = ((state, sympy.diff(rate, variable)) for state, rate in rates.items())
-    return next(((state, slope) for state, slope in slopes if slope != 0), None)
 
 
 def value_of(model: Model, expression: sympy.Expr, t_s: Array, x: Array, u: Array, p: Array) -> Array:
