@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+import sympy
 from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, beginning, filter_input_of
 from diagnosis.hypothesis.held_axes import with_held
 from diagnosis.hypothesis.initial_state import start_of
-from diagnosis.library.driven import driven
 from diagnosis.library.effect_library import EffectLibrary
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -184,12 +184,13 @@ def _flight(library: EffectLibrary, number: int, log: RunLog, used: NDArray[np.b
 def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:
     """What an unknown command, as far from the last as commands are from row to row, does to the state that it drives."""
     model = library.bound.model
-    found, known = np.zeros(len(library.states)), set(model.parameter_symbols)
-    for column, variable in enumerate(model.inputs):
-        reach = driven(model, variable)
-        if reach is not None and reach[1].free_symbols <= known:
-            gain, moves = library.bound.number(reach[1]), np.diff(filter_input.u[:, column])
-            found[library.states.index(reach[0])] += gain**2 * float(np.mean(moves**2)) if moves.size else 0.0
+    found = np.zeros(len(library.states))
+    for rotor in model.places.rotors.values():
+        if rotor.drive is None or str(rotor.speed) not in library.states:
+            continue
+        gain = library.bound.number(sympy.diff(rotor.drive, rotor.variable))
+        moves = np.diff(filter_input.u[:, model.inputs.index(rotor.variable)])
+        found[library.states.index(str(rotor.speed))] = gain**2 * float(np.mean(moves**2)) if moves.size else 0.0
     return found
 
 

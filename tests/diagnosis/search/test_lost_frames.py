@@ -18,7 +18,6 @@ from diagnosis.search.lost_frames import FORGOTTEN_ROWS, SWEEPS, _ratios, likely
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths.input_stages import uniform
-from tests.diagnosis.arm import LONG_S, arm, arm_case, arm_log
 from tests.diagnosis.conftest import Fly
 from tests.diagnosis.nominal import nominal_fit
 
@@ -75,22 +74,6 @@ def test_rows_that_a_log_lacks_are_no_lost_frames(plant: BoundPlant, fly: Fly) -
     untold = np.flatnonzero(found.flights[0].filter_input.untold_s)
     assert len(untold) > 30
     assert not found.flights[0].filter_input.lost[np.concatenate((untold, untold + 1))].any()
-
-
-@pytest.mark.parametrize("share", [0.0, 0.3])
-def test_frames_are_lost_on_a_rig_without_rotors_speeds_too(share: float) -> None:
-    # An arm whose input pushes it at once, kicked by a volt in each row that is a whole second: lost or not, its angle tells.
-    lost = {"loop.dropped_frames": {"p": share}} if share else {}
-    (flight,) = arm_case(arm_log(lost, seed=74, seconds=LONG_S, rows=5, kick_V=1.0)).flights
-    case, fitted = losses(arm(), flight.log)
-    if share:
-        assert fitted is not None
-        found = fitted.hypothesis.effects["loop.dropped_frames"]["p"]
-        # 2000 frames, of which the fifth that changes tells: 0.3 to 0.03 at best, and no better than by a third as they overlap.
-        assert found == pytest.approx(share, abs=0.1)
-    else:
-        assert fitted is None
-        assert loss_evidence(case, likely_share(case)) < decisions.TAKEN_IN
 
 
 @pytest.mark.soak
