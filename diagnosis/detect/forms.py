@@ -227,7 +227,7 @@ def _state_forms(case: Case, s: Signals) -> Iterator[Row]:
         for place, u in s.u.items():
             beside = input_name(case, place)
             size = in_units(beside, library.bound.model.places.inputs[place].size)
-            yield name, f"rate({name}, {beside}) of {name}", f"{unit} {size}", target, x * u * s.h
+            yield name, f"rate({beside}, {name}) of {name}", f"{unit} {size}", target, x * u * s.h
 
 
 def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row]:

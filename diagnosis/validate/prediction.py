@@ -40,7 +40,7 @@ def predictions(
 
     NaN in rows of no span, and where the filter fails or cannot yet tell.
     """
-    second_s = case.library.bound.model.second_s
+    second_s = case.second_s
     library, hypothesis = case.library, hypothesis.over(flight)
     compiled = library.compiled(hypothesis.effects)
     filter_input = filter_input_under(case, compiled, flight, hypothesis)
