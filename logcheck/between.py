@@ -15,8 +15,8 @@ Hashes = NDArray[np.uint64]
 def shared_rows(one: RunLog, other: RunLog) -> Rows:
     """Rows (n,) of `other` that stand in `one` too, within at least 32 rows in a row that do, whatever their times.
 
-    Some input changes within such rows, if any ever does: from a state that comes again, a plant under the same constant inputs goes the
-    same way again, reading for reading where these are coarse.
+    Some input changes within such rows: from a state that comes again, a plant under the same constant inputs goes the same way again,
+    reading for reading where these are coarse. Where none ever changes, as in free swings, they are more than a common way would be.
     """
     mine, theirs = _windows(one), _windows(other)
     n = len(other.t_s)
@@ -27,13 +27,10 @@ def shared_rows(one: RunLog, other: RunLog) -> Rows:
     np.add.at(edges, begins, 1)
     np.add.at(edges, begins + 2**thresholds.WINDOW_DOUBLINGS, -1)
     rows: Rows = np.cumsum(edges[:-1]) > 0
-    return rows & _runs_with(rows, _input_changes(other))
-
-
-def _input_changes(log: RunLog) -> Rows:
-    """Rows (n,) in which an input is another than in the row before; all, where none ever is."""
-    changes = np.concatenate([[False], (np.diff(log.u, axis=0) != 0.0).any(axis=1)])
-    return changes if changes.any() else np.ones_like(changes)
+    changes: Rows = np.concatenate([[False], (np.diff(other.u, axis=0) != 0.0).any(axis=1)])
+    if changes.any():
+        return rows & _runs_with(rows, changes)
+    return rows if rows.mean() > thresholds.BEGINS_ALIKE else np.zeros_like(rows)
 
 
 def _runs_with(rows: Rows, some: Rows) -> Rows:

@@ -39,19 +39,17 @@ def behind_play(filter_input: FilterInput, output: int, width: float, step: floa
     each_nats = min(BELL, charge(filter_input, output, width))
     found = less_sure(replace(filter_input, y=y), output, seen[unsure], alike, width, each_nats)
     before, behind = (given.r[seen[unsure], output] for given in (filter_input, found))
-    standing = filter_input.standing[seen[unsure], output]
-    scattered = (1.0 - before / behind) @ _noise_nats(read[unsure], stretch[unsure], standing, step, single)
-    return replace(found, known=found.known - float(scattered))
+    scattered = float((1.0 - before / behind) @ _noise_nats(read[unsure], stretch[unsure], step, single))
+    return replace(found, known=found.known - scattered)
 
 
-def _noise_nats(read: Array, stretch: NDArray[np.int64], standing: Array, step: float, single: float) -> Array:
+def _noise_nats(read: Array, stretch: NDArray[np.int64], step: float, single: float) -> Array:
     """What readings (n,) cost as noise about the mean of their stretch, of the variance that they show or, where that is larger, of a
-    `single` one: less sure, none of it costs the filter anything. A count that stands for several rows counts once, as it does elsewhere.
-    Of a stretch beside an edge either count may be read: half a step off."""
+    `single` one: less sure, none of it costs the filter anything. Of a stretch beside an edge either count may be read: half a step off."""
     _, stretch, counts = np.unique(stretch, return_inverse=True, return_counts=True)
     away = read - (np.bincount(stretch, read, minlength=len(counts)) / counts)[stretch]
     variance = max(float(away @ away) / max(len(read) - len(counts), 1), single)
-    return 0.5 * (away**2 / (standing * max(variance, 0.25 * step**2)) + float(np.log(variance / single)))
+    return 0.5 * (away**2 / max(variance, 0.25 * step**2) + float(np.log(variance / single)))
 
 
 def pushing(read: Array, noise: float) -> Array:

@@ -37,6 +37,15 @@ def test_a_plant_left_alone_goes_the_same_way_again_and_is_no_copy(input_changes
     assert kinds(examined(logs[0], holdout=[logs[1]]), "refuse") == refused
 
 
+@pytest.mark.parametrize(("alike", "refused"), [(60, set()), (600, {"holdout_overlap"})])
+def test_free_swings_meet_on_their_way_and_copies_share_more_of_it(alike: int, refused: set[str]) -> None:
+    # Truth: inputs that stand all along, and so many of 2001 rows alike, reading for reading.
+    shared = np.s_[900 : 900 + alike]
+    logs = [replace(log, u=np.zeros_like(log.u), y=log.y.copy(), extra={}) for log in (clean(), other_flight())]
+    logs[1].y[shared] = logs[0].y[shared]
+    assert kinds(examined(logs[0], holdout=[logs[1]]), "refuse") & {"holdout_overlap"} == refused
+
+
 @pytest.mark.parametrize(("factor", "severity"), [(1.1, None), (1.5, "note"), (2.5, "note")])
 def test_logs_that_hold_the_same_angle_with_another_input_are_told_and_not_refused(
     factor: float, severity: str | None

@@ -239,23 +239,6 @@ def test_play_charges_for_standing_once_a_stretch() -> None:
     assert 2.0 * 0.32 < charged < 2.0 * (0.32 + 2.0)
 
 
-@pytest.mark.parametrize("noise", [0.2, 0.4])
-def test_noise_on_readings_that_stand_behind_play_costs_what_it_costs_an_axis_at_rest(noise: float) -> None:
-    # Truth: an axis that pushes up, rests for 400 rows, and pushes down, read with noise of a share of a step before the encoder rounds it.
-    # About its mean each reading costs y^2 / 2 r, those of one count together no more than one. Rows on the way up and down cost as much
-    # each, and are a quarter of all where nothing tells yet that it pushes.
-    rng, rest = np.random.default_rng(5), slice(60, 440)
-    angle = STEP * np.concatenate([np.arange(50), np.full(400, 49.4), 49.0 - np.arange(50)])
-    plain = readings(STEP * np.round(angle / STEP + noise * rng.standard_normal(500)))
-    behind = behind_play(plain, 0, 20.0 * STEP, STEP)
-    widened = plain.r[:, 0] < 0.99 * behind.r[:, 0]
-    own = 0.5 * np.log(behind.r[widened, 0] / plain.r[widened, 0]).sum()
-    away = plain.y[rest, 0] - np.average(plain.y[rest, 0], weights=1.0 / plain.r[rest, 0])
-    at_rest = 0.5 * np.sum(away**2 / plain.r[rest, 0])
-    assert widened[rest].all()
-    assert plain.known + own - behind.known == pytest.approx(at_rest, rel=0.35)
-
-
 def test_a_coarser_grid_brings_back_no_reading_of_an_axis_that_is_held() -> None:
     # Truth: the readings of a held axis count no more, so no size of a grid may change what the filter makes of them.
     library = effect_library(arm())
