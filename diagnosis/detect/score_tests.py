@@ -14,7 +14,7 @@ from diagnosis.detect.instants import instants
 from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.waves import wave_starts
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import flat_slopes, from_zero, likelihood, size_scale, stacked
+from diagnosis.fit.gauss_newton import flat_slopes, likelihood, size_scale, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.library.coarse_grid import coarse_step
@@ -233,24 +233,24 @@ def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
     effects = [case.library.effects[name] for name in names]
     begun = thread_map(lambda effect: _ways(case, linearisation, effect), effects)
     ways = [(effect, way) for effect, found in zip(effects, begun, strict=True) for way in found]
-    tried = list(chain.from_iterable(thread_map(lambda way: _along(case, linearisation, *way), ways)))
+    tried = list(chain.from_iterable(thread_map(lambda way: along(case, linearisation, *way), ways)))
     steps = {effect.name for effect in effects if effect.size.role is Role.STEP}
     return [entry for entry in tried if entry.effect not in steps] + _each_best(
         entry for entry in tried if entry.effect in steps
     )
 
 
-def _along(case: Case, linearisation: Linearisation, effect: Effect, way: Sequence[Values]) -> list[ScoreTest]:
+def along(case: Case, linearisation: Linearisation, effect: Effect, way: Sequence[Values]) -> list[ScoreTest]:
     """The tries from the mildest on, down to one that loses: to first order the log likelihood is concave in a size, and beyond that all
-    lose more. A limit that lies out of reach where it is nothing has no first order: one that cuts noise alone loses where one that holds
-    back a manoeuvre gains."""
-    found, is_concave = list[ScoreTest](), from_zero(effect.size)
+    lose more. Play and limits have no first order: what is as small as noise, or cuts noise alone, loses where what holds back a
+    manoeuvre gains."""
+    found = list[ScoreTest]()
     for values in way:
         entry = _tried(case, linearisation, effect, values)
         if entry is None:
             continue
         found.append(entry)
-        if is_concave and entry.gain < -decisions.chance_nats():
+        if effect.smooth and entry.gain < -decisions.chance_nats():
             break
     return found
 

@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.score_tests import along, score_effects
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.nominal import plain_fit
 from sim.added_effects import library
@@ -59,12 +59,24 @@ def test_sizes_are_tried_from_the_mildest_on_until_they_lose(name: str, place: i
     assert seen.gain > decisions.TAKEN_IN
 
 
-def test_of_a_play_that_is_not_there_the_mildest_alone_is_tried() -> None:
+def test_of_a_play_that_is_not_there_none_gains() -> None:
     # Truth: none; the severest play that is asked of would lose thousands of nats, so that no try of it must be what is told.
     case = arm_case(arm_log({}))
     (seen,) = score_effects(case, linearised(case, nominal_fit(case)), ["theta_sensor.backlash"])
     assert seen.gain < 0.0
-    assert seen.values["width"] == min(library(arm())["theta_sensor.backlash"].size.starts)
+    assert seen.values["width"] < max(library(arm())["theta_sensor.backlash"].size.starts)
+
+
+def test_play_is_tried_beyond_one_that_loses_and_a_delay_is_not() -> None:
+    # Truth: none of either. Play has no first order: what is small says nothing of what is large. The likelihood by a delay is concave.
+    case = arm_case(arm_log({}))
+    linearisation = linearised(case, nominal_fit(case))
+    for name, symbol, beyond in (("theta_sensor.backlash", "width", True), ("theta_sensor.delay", "tau", False)):
+        effect = library(arm())[name]
+        sizes = sorted(effect.size.starts)
+        found = along(case, linearisation, effect, [{**effect.absent, symbol: size} for size in sizes])
+        losing = [entry.gain < -decisions.chance_nats() for entry in found]
+        assert losing.index(True) < len(losing) - 1 if beyond else losing.index(True) == len(losing) - 1
 
 
 def test_a_limit_is_tried_beyond_one_that_cuts_noise_alone_and_loses() -> None:
