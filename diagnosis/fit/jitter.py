@@ -18,7 +18,7 @@ from diagnosis import decisions
 from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
-from diagnosis.library.sensor_effects import rates
+from diagnosis.library.sensor_effects import RATE_S, rates
 from sim.effect import Role
 
 JITTER_SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay, scatter that is tried,
@@ -51,7 +51,9 @@ def most_shown_s(case: Case, output: str) -> float:
     """
     step = case.library.bound.plant.sensors.get(output, 0.0)
     place = case.library.outputs.index(output)
-    found = [_roughness(flight.filter_input.t_s, flight.filter_input.read[:, place], step) for flight in case.flights]
+    span_s = RATE_S * case.second_s
+    inputs = [flight.filter_input for flight in case.flights]
+    found = [_roughness(given.t_s, given.read[:, place], step, span_s) for given in inputs]
     square, rate = np.concatenate(found, axis=1)
     if not len(rate):
         return 0.0
@@ -87,11 +89,11 @@ def jitter_sd(case: Case, hypothesis: Hypothesis, name: str) -> float:
     return float(reach * np.sqrt(0.5 / lost)) if 0.5 < lost < np.inf else reach
 
 
-def _roughness(t_s: Array, read: Array, step: float) -> Array:
+def _roughness(t_s: Array, read: Array, step: float, span_s: float) -> Array:
     """(d4 y)^2 / 70 and the rate about it (2, readings) where an axis turns by more than a step of its encoder a row."""
     t_s, read = t_s[np.isfinite(read)], read[np.isfinite(read)]
     square = np.diff(read, 4) ** 2 / FOURTH
-    rate = np.abs(rates(t_s, read))[2:-2]
+    rate = np.abs(rates(t_s, read, span_s))[2:-2]
     faster = rate * (t_s[4:] - t_s[:-4]) > 4.0 * step
     return np.stack([square[faster], rate[faster]])
 

@@ -18,7 +18,8 @@ from sim.paths.path import OutputStage
 
 Array = NDArray[np.float64]
 Row = TypeVar("Row")
-RATE_S = 0.05  # to both sides, over which a reading's rate is taken: long enough for an encoder's steps, short for a helicopter
+# To both sides, in the plant's seconds, over which a rate is taken: long enough for an encoder's steps, short for a helicopter.
+RATE_S = 0.05
 
 
 def sensed(library: EffectLibrary, filter_input: FilterInput, effects: Mapping[str, Values]) -> FilterInput:
@@ -50,7 +51,8 @@ def row_for(table: Mapping[type, Row], stage: OutputStage, where: str) -> Row:
 
 def _on_time(library: EffectLibrary, filter_input: FilterInput, stage: OutputDelay) -> FilterInput:
     stated = variance_stated(library.bound.plant, library.outputs[stage.output])
-    return late(unsure_when(filter_input, stage.output, stage.jitter_s, stated), stage.output, stage.tau_s)
+    span_s = RATE_S * library.bound.model.second_s
+    return late(unsure_when(filter_input, stage.output, stage.jitter_s, stated, span_s), stage.output, stage.tau_s)
 
 
 def _unlagged(_: EffectLibrary, filter_input: FilterInput, stage: OutputLag) -> FilterInput:
@@ -66,8 +68,11 @@ def _through_play(library: EffectLibrary, filter_input: FilterInput, stage: Play
     return behind_play(filter_input, stage.output, stage.width, step)
 
 
-def unsure_when(filter_input: FilterInput, output: int, jitter_s: float, stated: float) -> FilterInput:
-    """The filter input whose readings of an output are true at an instant that is known to `jitter_s` only: r + (dy/dt jitter)^2.
+def unsure_when(
+    filter_input: FilterInput, output: int, jitter_s: float, stated: float, span_s: float = RATE_S
+) -> FilterInput:
+    """The filter input whose readings of an output are true at an instant that is known to `jitter_s` only: r + (dy/dt jitter)^2, the rate
+    over `span_s` to both sides.
 
     What the readings showed of noise beyond the variance that is `stated` is no more than that then, as far as its mean goes.
     """
@@ -75,16 +80,16 @@ def unsure_when(filter_input: FilterInput, output: int, jitter_s: float, stated:
     if jitter_s <= 0.0 or not len(seen):
         return filter_input
     r = filter_input.r.copy()
-    further = (rates(filter_input.t_s[seen], filter_input.read[seen, output]) * jitter_s) ** 2
+    further = (rates(filter_input.t_s[seen], filter_input.read[seen, output], span_s) * jitter_s) ** 2
     known = min(max(filter_input.single[output] - stated, 0.0), float(np.mean(further)))
     r[seen, output] += further - filter_input.standing[seen, output] * known
     return replace(filter_input, r=r)
 
 
-def rates(t_s: Array, read: Array) -> Array:
-    """How fast readings (n,) at the instants t_s (n,) change, in their unit per second, over RATE_S to both sides; 0 of a single one."""
-    before = np.searchsorted(t_s, t_s - RATE_S)
-    behind = np.minimum(np.searchsorted(t_s, t_s + RATE_S), len(t_s) - 1)
+def rates(t_s: Array, read: Array, span_s: float) -> Array:
+    """How fast readings (n,) at the instants t_s (n,) change, in their unit per second, over `span_s` to both sides; 0 of a single one."""
+    before = np.searchsorted(t_s, t_s - span_s)
+    behind = np.minimum(np.searchsorted(t_s, t_s + span_s), len(t_s) - 1)
     passed_s = t_s[behind] - t_s[before]
     return np.divide(read[behind] - read[before], passed_s, out=np.zeros(len(t_s)), where=passed_s > 0.0)
 

@@ -101,7 +101,7 @@ def first_fits(
 def alone(case: Case, first: FirstFits) -> Alone:
     """Fit single effects to their end, from where they begin."""
     found: dict[frozenset[str], FittedHypothesis] = {}
-    end(case, first.begun, found, first.nominal)
+    _end(case, first.begun, found, first.nominal)
     keep_better(found, first.found.values())
     if found:
         fit_twins(case, found, _best(found))
@@ -125,7 +125,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown, worth = _grown(case, best, names, worth)
-        if not best or not end(case, first_of_each(case, grown, found), found, best[0]):
+        if not best or not _end(case, first_of_each(case, grown, found), found, best[0]):
             break
         exchange(case, found, worth)
         shrink(case, found)
@@ -313,7 +313,7 @@ def worth_ending(begun: Sequence[FittedHypothesis], known: FittedHypothesis) -> 
     return sorted(near, key=lambda entry: -entry.evidence)[: decisions.NEXT]
 
 
-def end(
+def _end(
     case: Case,
     begun: Sequence[FittedHypothesis],
     found: dict[frozenset[str], FittedHypothesis],
@@ -326,7 +326,8 @@ def end(
     ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
     ends = thread_map(lambda fitted: in_all_logs(case, fitted), ends)
     done = sorted(ends, key=lambda entry: -entry.evidence)
-    keep_better(found, [*begun, *done])
+    # Ends take the place of what was begun, also where they are less likely: a first fit may hold a scatter that readings do not show.
+    found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})
     strayed = [e for e in done[: decisions.NEXT] if is_astray(e.fit.hypothesis, decisions.ASTRAY)]
     keep_better(found, thread_map(lambda entry: once_more(case, entry), strayed))
     return True

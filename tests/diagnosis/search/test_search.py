@@ -16,7 +16,7 @@ from diagnosis.fit.gauss_newton import Fit, Free, fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.beam import Alone, Search, certainties, end, first_of_each, search, worth_ending
+from diagnosis.search.beam import Alone, Search, certainties, first_of_each, search, worth_ending
 from diagnosis.search.exchange import exchange, fit_twins, shrink
 from diagnosis.search.fitting import Job, once_more, refined, rough
 from sim.added_effects import library
@@ -238,15 +238,3 @@ def test_what_is_worth_an_end_gains_a_fair_share_or_is_the_best_that_there_is(
     known = FittedHypothesis((), nominal, 1000.0)
     begun = [replace(known, effects=(str(gain),), evidence=1000.0 + gain) for gain in gained]
     assert sorted(entry.effects[0] for entry in worth_ending(begun, known)) == sorted(map(str, ended))
-
-
-def test_an_end_less_likely_than_where_it_began_is_not_kept() -> None:
-    # A first fit that is likelier than any end of it: by its evidence, which here is said to be so.
-    case = arm_case(arm_log({"arm.coulomb": {"b": 3e-4}}, seed=74))
-    nominal = nominal_fit(case)
-    known = FittedHypothesis((), nominal, log_evidence(nominal, case.library.effects))
-    begun = fitted(case, nominal, {"arm.coulomb": {"b": 3e-4}})
-    for evidence, kept in ((begun.evidence + 1e6, True), (begun.evidence - 1e6, False)):
-        found: dict[frozenset[str], FittedHypothesis] = {}
-        assert end(case, [replace(begun, evidence=evidence)], found, known)
-        assert (found[frozenset(begun.effects)].evidence == evidence) == kept
