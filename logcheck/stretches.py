@@ -76,8 +76,8 @@ def _kept(log: RunLog, chosen: Sequence[slice]) -> str:
 
 def _every(log: RunLog, rate_rad_s: float) -> int:
     """The factor by which a log may be thinned: its rows are then ACCURATE_STEP of the plant's shortest time constant apart, or COARSEST_S.
-    The filter follows what moves between them by the equations, but knows of inputs their mean alone: a whole time constant of a motor's
-    current apart, a motor as stated seemed late by 0.7 ms."""
+    The filter follows what moves between them by the equations, but knows of inputs their mean alone: of rows a whole time constant apart
+    that is too little, and looks like a delay."""
     apart_s = min(thresholds.COARSEST_S, ACCURATE_STEP / rate_rad_s if rate_rad_s > 0.0 else np.inf)
     return int(apart_s / log.sample_period_s + PERIOD_ROUNDED)
 

@@ -127,7 +127,7 @@ def loss_evidence(case: Case, share: float) -> float:
 def drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
     """Input column -> the state that it drives and by how much; only rotors whose speed is a state of its own have one.
 
-    Where an input pushes an axis at once, frames judged one by one take what a lag does: a real arm's was then told as nine in ten lost.
+    Where an input pushes an axis at once, frames that are judged one by one take what a lag does.
     """
     library, model = case.library, case.library.bound.model
     return {

@@ -16,6 +16,7 @@ def effects(model: Model) -> Iterator[Effect]:
     for place, entry in model.places.inputs.items():
         column = model.inputs.index(entry.variable)
         size = entry.size
+        # Up to what a motor's driver needs, which crosses its range in some milliseconds.
         grid = tuple(share * size for share in (0.3, 0.7, 1.5, 3.0, 7.0, 20.0, 70.0, 200.0))
         never = 1.0e7 * size  # faster than any command changes in a sample
         unit = "s^-1" if entry.unit == "-" else f"{entry.unit} s^-1"

@@ -5,7 +5,7 @@ Where nothing moves but currents, temperatures or levels, a model must predict a
 (1)  second_s = 2^n,  the power of two nearest to 1 / |lambda|,  1 at least
 
 lambda the largest eigenvalue of the equations' slopes by the states, where each output is of its usual size and each input half its
-largest. In powers of two, other values of the parameters leave it as it is. A mass on a bench moves within a second, however it is driven.
+largest. In powers of two, a re-tune of the parameters hardly ever changes it. A mass on a bench moves within a second, whatever drives it.
 """
 
 import math

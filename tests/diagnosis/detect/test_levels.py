@@ -49,8 +49,8 @@ def test_steps_begin_at_all_that_promise_as_first_order_knows_no_hill() -> None:
     ("name", "place"), [("theta_sensor.backlash", 0), ("input.backlash", 1), ("input.slew_limit", 0)]
 )
 def test_sizes_are_tried_from_the_mildest_on_until_they_lose(name: str, place: int) -> None:
-    # Truth: one of the sizes that are tried: the mildest play of all, the second of three, and the slowest of six limits of a rate, behind
-    # five that say next to nothing. It is worth to be taken in.
+    # Truth: one of the sizes that are tried: the mildest play of all, the second of three, and the slowest of eight rates, behind seven
+    # limits that say next to nothing. It is worth to be taken in.
     effect = library(arm())[name]
     size = sorted(effect.size.starts)[place]
     case = arm_case(arm_log({name: {effect.size.symbol: size}}))

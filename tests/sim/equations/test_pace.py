@@ -7,7 +7,7 @@ import pytest
 
 from records.plant import load_plant
 from sim.bind import BoundPlant, bind
-from sim.effect import EffectParameter
+from sim.effect import EffectParameter, Role
 from sim.effects import effects_for
 from sim.plants import MODELS
 from tests.own_plants import HEATER, NO_AXIS, OwnPlant
@@ -62,9 +62,9 @@ def test_times_of_its_effects_are_its_own_and_instants_those_of_the_logs(tmp_pat
         ("probe.lag", "tau", 32.0),
         ("heater.slew_limit", "r", 1.0 / 32.0),
         ("heater.deadzone", "d", 1.0),
-        ("probe.offset", "t_s", 1.0),
     ):
-        one, other = (effects[effect].parameter.get(symbol) for effects in (slow, fast))
-        if one is not None and other is not None:
-            assert bounds(one) == pytest.approx([factor * value for value in bounds(other)])
-    assert {"heater.delay", "probe.lag", "heater.slew_limit"} <= slow.keys()
+        one, other = (effects[effect].parameter[symbol] for effects in (slow, fast))
+        assert bounds(one) == pytest.approx([factor * value for value in bounds(other)])
+    for role in (Role.INSTANT, Role.BEGINNING):
+        instant = EffectParameter("t_0", "s", 0.0, 1.0e5, 10.0, role=role)
+        assert instant.at_pace(32.0) is instant
