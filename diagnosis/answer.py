@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.unknown import Suspect, suspects
 from diagnosis.decide.weighing import Weighed, alike, learned
-from diagnosis.detect.detection import FormScores
+from diagnosis.detect.form_scores import FormScores
 from diagnosis.detect.visibility import cannot_tell
 from diagnosis.experiment.next_experiment import next_experiment
 from diagnosis.experiment.revealing import revealing_experiment
@@ -42,7 +42,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     known = _tempered(case, judged.chosen, weighed.scale)
     kept = holdout.notes if holdout is not None and judged.chosen is holdout.base else ()
     slipped = whole_rows(case, known, material.firmware)
-    notes = (*judged.notes, *kept, *slipped, *notes_of(case, seen.score_tests, judged.chosen, weighed, material.names))
+    notes = (*judged.notes, *kept, *slipped, *notes_of(case, seen.tests, judged.chosen, weighed, material.names))
     diagnosis = Diagnosis(
         verdict="gap",
         false_alarm_probability=seen.detection.p,
@@ -90,8 +90,8 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit
     chosen = seen.retuned if holdout is None else holdout.base
     predicted = () if holdout is None else holdout.predicted(chosen)
     told = () if holdout is None else holdout.notes
-    blind = reason is Exit.TOO_UNSURE or cannot_tell(case, seen.score_tests)
-    notes = (*material.notes, *told, *notes_of(case, seen.score_tests, chosen, None, material.names))
+    blind = reason is Exit.TOO_UNSURE or cannot_tell(case, seen.tests)
+    notes = (*material.notes, *told, *notes_of(case, seen.tests, chosen, None, material.names))
     diagnosis = Diagnosis(
         verdict="cannot tell" if blind else "no gap",
         false_alarm_probability=seen.detection.p,

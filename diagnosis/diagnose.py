@@ -21,14 +21,14 @@ from diagnosis.decide.rows import OTHER_ROWS, demand_rows, rows_in_doubt
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Explanations, Weighed, chosen_of, first_share, weigh
 from diagnosis.decide.wiring import demand_wiring
-from diagnosis.detect.detection import form_scores
+from diagnosis.detect.form_scores import form_scores
 from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import has_memory
 from diagnosis.result import Exit, Judged, Material, Result, Seen
-from diagnosis.screening import alarmed, alone_of, beside_noise, detected_anew, seen_of
+from diagnosis.screening import alarmed, alone_of, beside_noise, detected_anew, seen_of, with_tests
 from diagnosis.search.beam import Search, search, with_twins
 from diagnosis.search.draughts import Draught, draught, knocks
 from diagnosis.search.free_curve import FittedCurve, free_curve
@@ -36,6 +36,7 @@ from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import Yielding, changes_names, needed, yielding
 from diagnosis.search.retune import Retune, retune
 from diagnosis.validate.fitted_logs import FittedLogs
+from jobs.thread_map import at_once
 from records.diagnosis import Firmware
 from records.reasons import Note
 from sim.bind import BoundPlant
@@ -55,12 +56,15 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen, noise = is_noise(noisy, seen, found)
     if noise:
         return _nothing(seen, noisy, material, Exit.NOTHING_SEEN)
-    beyond = retune(seen.case, seen.retuned.fit)
-    seen = confirmed_by(seen, found, beyond)
-    if not alarmed(seen.detection.p):
-        return _nothing(seen, noisy, material, Exit.UNEXPLAINED)
-    curve = free_curve(seen.case, seen.retuned, seen.linearisation, found.fitted[0])
-    seen, judged = _judged(seen, material, _Found(found, beyond, curve))
+    beyond, curve, left = at_once(
+        lambda: retune(seen.case, seen.retuned.fit),
+        lambda: free_curve(seen.case, seen.retuned, seen.linearisation, found.fitted[0]),
+        lambda: _left(seen.case, found),
+    )
+    confirmed = confirmed_by(seen, found, beyond)
+    if not alarmed(confirmed.detection.p):
+        return _nothing(confirmed, noisy, material, Exit.UNEXPLAINED)
+    seen, judged = _judged(confirmed, material, _Found(found, left, beyond, curve))
     seen, left_by = of_consequence(seen, judged)
     if left_by is not None:
         perhaps = may_be_missing(judged) if left_by is Exit.TOO_UNSURE else ()
@@ -134,9 +138,9 @@ def _gust(seen: Seen, material: Material, found: Draught) -> Result:
     """The answer where all that is missing is a torque that comes and goes: beside a plant whose noise is white."""
     gained = found.gusty.evidence - found.quiet.evidence
     p = min(1.0, float(np.exp(-gained)))
-    seen = replace(seen, retuned=found.quiet, detection=replace(seen.detection, p=p))
-    search = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.score_tests)
-    seen, judged = _judged(seen, material, _Found(search))
+    seen = with_tests(replace(seen, retuned=found.quiet, detection=replace(seen.detection, p=p)))
+    search = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.tests)
+    seen, judged = _judged(seen, material, _Found(search, _left(seen.case, search)))
     return _gap(seen, material, judged)
 
 
@@ -215,9 +219,11 @@ def _searched(seen: Seen) -> Search | None:
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """What may explain a gap: names, the plant's parameters beyond their spread, a free curve."""
+    """What may explain a gap: names, with the nats that are `left` beside the best of them, the plant's parameters beyond their spread, a
+    free curve."""
 
     search: Search
+    left: float
     beyond: Retune | None = None
     curve: FittedCurve | None = None
 
@@ -230,7 +236,8 @@ def _judged(seen: Seen, material: Material, found: _Found) -> tuple[Seen, Judged
     first = ranked.weighed.fitted[0] if ranked.weighed.fitted else None
     wider = found.search if first is None else with_twins(seen.case, found.search, first)
     if wider is not found.search:
-        found = replace(found, search=wider)
+        same = _best(wider) is _best(found.search)
+        found = replace(found, search=wider, left=found.left if same else _left(seen.case, wider))
         ranked = _ranked(seen, material, found, logs, ranked.holdout)
     seen, weighed, holdout, retuned = ranked.seen, ranked.weighed, ranked.holdout, seen.retuned
     doubts = doubt(seen.case, found.search, weighed, material.names)
@@ -290,13 +297,20 @@ def _likeliest(weighed: Weighed, beyond: Retune | None) -> FittedHypothesis | No
 
 def _explanations(seen: Seen, found: _Found) -> Explanations:
     """All that may explain the gap; what swings beside noise is a form of its own."""
-    fitted, beyond = found.search.fitted, found.beyond
-    best = fitted[0] if fitted[0].effects else fitted[-1]
-    library = seen.case.library
-    left = left_beside(form_scores(linearised(seen.case, best.fit)), [library.effects[name] for name in best.effects])
-    named = tuple(entry for entry in fitted if entry.effects)
+    beyond, named = found.beyond, tuple(entry for entry in found.search.fitted if entry.effects)
     alone, nats = (None, None) if beyond is None else (beyond.fitted, beyond.score)
-    return Explanations(named, seen.retuned, library, left, alone, nats, found.curve)
+    return Explanations(named, seen.retuned, seen.case.library, found.left, alone, nats, found.curve)
+
+
+def _best(found: Search) -> FittedHypothesis:
+    """The best of what was found, with effects where any has some."""
+    return found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
+
+
+def _left(case: Case, found: Search) -> float:
+    """What forms still gain beside the best of what was found, in nats."""
+    best = _best(found)
+    return left_beside(form_scores(linearised(case, best.fit)), [case.library.effects[name] for name in best.effects])
 
 
 def _checked(

@@ -61,16 +61,17 @@ class Material:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What is seen before any cause is looked for: the plant re-tuned within its spread, score tests of the library beside it, the fit with
-    lost frames, and what all that says of a gap; `beside` is what was fitted already, `checked` are the logs to check on, `decisions` the
-    rules that had a say so far, `begun` its single effects where these were fitted, `still` the same from the plant without noise with a
-    memory where that was looked at, `held` the logs with their inputs held from row to row where another reading is likelier."""
+    """What is seen before any cause is looked for: the plant re-tuned within its spread, score tests of the library beside it, None where
+    nobody asked for them yet, the fit with lost frames, and what all that says of a gap; `beside` is what was fitted already, `checked`
+    are the logs to check on, `decisions` the rules that had a say so far, `begun` its single effects where these were fitted, `still` the
+    same from the plant without noise with a memory where that was looked at, `held` the logs with their inputs held from row to row where
+    another reading is likelier."""
 
     case: Case
     checked: Case | None
     retuned: FittedHypothesis
     linearisation: Linearisation
-    score_tests: tuple[ScoreTest, ...]
+    score_tests: tuple[ScoreTest, ...] | None
     lossy: Fit | None
     detection: Detection
     decisions: tuple[Decision, ...] = ()
@@ -78,6 +79,12 @@ class Seen:
     begun: Alone | None = None
     still: "Seen | None" = None
     held: "Held | None" = None
+
+    @property
+    def tests(self) -> tuple[ScoreTest, ...]:
+        """The score tests, which were asked for."""
+        assert self.score_tests is not None
+        return self.score_tests
 
     def because(self, *further: Decision) -> "Seen":
         """The same with further rules that had a say."""

@@ -9,8 +9,8 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.detect.detection import detect
-from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.linearisation import Linearisation, linearised
+from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.fit.between_rows import between_rows, held_beside, with_commands
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
 from diagnosis.fit.gauss_newton import Fit, fit
@@ -85,7 +85,8 @@ def _screened(
     seen = replace(scored(case, checked, nominal, rules), beside=beside)
     if not alarmed(seen.detection.p):
         return seen, None
-    seen = replace(seen, still=_still(seen))
+    still = _still(seen)
+    seen = with_tests(seen) if still is None else replace(seen, still=still)
     names = _first_fits(seen.still or seen)
     best = names.best
     again = plain_beside(case, best.fit, nominal)
@@ -112,11 +113,19 @@ def scored(case: Case, checked: Case | None, nominal: Fit, rules: tuple[Decision
     linearisation = linearised(case, nominal)
     case, lossy = with_losses(case, linearisation)
     linearisation = replace(linearisation, case=case)
-    score_tests = score_effects(case, linearisation, case.library.candidates)
     retuned = FittedHypothesis((), nominal, log_evidence(nominal, case.library.effects))
-    detection = detect(case, linearisation, score_tests, lossy)
+    detection, score_tests = detect(case, linearisation, lambda: _tests(linearisation), lossy)
     rules = (*rules, *detection.decisions, false_alarm("logs", detection.p))
-    return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
+    return Seen(case, checked, retuned, linearisation, score_tests, lossy, detection, rules)
+
+
+def with_tests(seen: Seen) -> Seen:
+    """The same with its score tests."""
+    return seen if seen.score_tests is not None else replace(seen, score_tests=_tests(seen.linearisation))
+
+
+def _tests(linearisation: Linearisation) -> tuple[ScoreTest, ...]:
+    return tuple(score_effects(linearisation.case, linearisation, linearisation.case.library.candidates))
 
 
 def beside_noise(seen: Seen) -> Seen:
@@ -130,7 +139,7 @@ def beside_noise(seen: Seen) -> Seen:
     best = names.best(1)[0]
     rule, stands = (_foreseen if alarmed(seen.detection.p) else _over_noise)(seen, best)
     if not stands:
-        return seen.because(rule)
+        return with_tests(seen).because(rule)
     chance = min(seen.detection.p, float(np.exp(-max(best.evidence - seen.retuned.evidence, 0.0))))
     found = replace(still, begun=names, detection=replace(seen.detection, p=chance), decisions=seen.decisions)
     return found.because(rule)
@@ -142,7 +151,7 @@ def alone_of(seen: Seen) -> Alone:
 
 
 def _first_fits(seen: Seen) -> FirstFits:
-    return first_fits(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
+    return first_fits(seen.case, seen.retuned, seen.linearisation, seen.tests, seen.lossy, seen.beside)
 
 
 def alarmed(p: float) -> bool:
@@ -193,5 +202,5 @@ def _still(seen: Seen) -> Seen | None:
     if still is None:
         return None
     linearisation = linearised(case, still.fit)
-    score_tests = tuple(score_effects(case, linearisation, case.library.candidates))
-    return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests, begun=None, still=None)
+    tests = _tests(linearisation)
+    return replace(seen, retuned=still, linearisation=linearisation, score_tests=tests, begun=None, still=None)

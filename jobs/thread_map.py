@@ -29,6 +29,11 @@ def thread_map(function: Callable[..., Found], *items: Iterable[Any]) -> list[Fo
     return [own[place] if place in own else one.result() for place, one in enumerate(asked)]
 
 
+def at_once(*pieces: Callable[[], Any]) -> list[Any]:
+    """What the pieces return, in their order."""
+    return thread_map(lambda piece: piece(), pieces)
+
+
 def begin(function: Callable[..., object], *items: object) -> None:
     """Begin what somebody will ask for; the process does not end before it is done."""
     _AHEAD.submit(function, *items)

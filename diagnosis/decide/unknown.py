@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.detect.detection import MEAN_GAIN, FormScores, gains
+from diagnosis.detect.form_scores import MEAN_GAIN, FormScores, gains
 from records.text.functional_class import parse_class
 from sim.effect import Effect
 

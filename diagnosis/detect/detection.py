@@ -3,7 +3,6 @@ own parameters had to leave what is stated of them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import mpmath
 import numpy as np
@@ -11,28 +10,18 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decisions import held_against
-from diagnosis.detect.forms import Form, forms
+from diagnosis.detect.form_scores import MEAN_GAIN, FormScores, answers, gains, null_gains
 from diagnosis.detect.instants import disturbed_by
-from diagnosis.detect.linearisation import Linearisation, Scores
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.replicas import Tail, replicas, tail_of
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.fit.gauss_newton import Fit, away, prior_chi_squared, size_scale
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
-from jobs.thread_map import thread_map
+from jobs.thread_map import at_once, thread_map
 from records.reasons import Decision
 
 Array = NDArray[np.float64]
-MEAN_GAIN = 0.5  # of white innovations
-
-
-@dataclass(frozen=True, eq=False)
-class FormScores:
-    """Every form beside a fit: its scores, and what it usually gains where it says nothing (forms,)."""
-
-    forms: tuple[Form, ...]
-    scores: Scores
-    null_gain: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,28 +37,45 @@ class Detection:
     decisions: tuple[Decision, ...] = ()
 
 
+@dataclass(frozen=True, eq=False)
+class _Gains:
+    """Gains of the log likelihood (k,) by what may be missing, and the same in replicas without gap (k, replicas)."""
+
+    seen: Array
+    null: Array
+
+    def usual(self) -> "_Gains":
+        """The same in units of what each usually gains without a gap."""
+        usual = np.maximum(1.0, self.null.mean(axis=1) / MEAN_GAIN)
+        return _Gains(self.seen / usual, self.null / usual[:, None])
+
+    def beside(self, other: "_Gains") -> "_Gains":
+        """Both."""
+        return _Gains(np.concatenate([self.seen, other.seen]), np.concatenate([self.null, other.null]))
+
+
 def detect(
-    case: Case, linearisation: Linearisation, score_tests: Sequence[ScoreTest], lossy: Fit | None = None
-) -> Detection:
-    """Compare the gains of effects at their best starts, of lost frames, of steps in time and of all forms with replicas."""
-    found = forms(linearisation)
-    of_effects, of_forms, drawn = _at_once(
-        lambda: _effect_columns(case, linearisation, score_tests),
-        lambda: _form_columns(linearisation, found),
-        lambda: replicas(linearisation),
-    )
-    (by_form, null_forms), (effects, null_effects), (events, null_events) = _at_once(
-        lambda: _gains_of(linearisation, of_forms, drawn),
-        lambda: _gains_of(linearisation, of_effects, drawn),
-        lambda: _events(case, linearisation, drawn),
-    )
-    null = np.concatenate([null_forms, null_effects])
-    usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
-    seen = np.concatenate([gains(by_form), gains(effects)]) / usual
-    outside = [entry.gain for entry in score_tests if not case.library.carried(entry.effect)]
-    outside += [] if lossy is None else [lossy.log_posterior - linearisation.fit.log_posterior]
-    largest = max([*events, *outside, float(np.max(seen, initial=0.0))])
-    tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
+    case: Case, linearisation: Linearisation, tests: Callable[[], Sequence[ScoreTest]], lossy: Fit | None = None
+) -> tuple[Detection, tuple[ScoreTest, ...] | None]:
+    """Compare the gains of lost frames, of steps in time and of all forms with replicas; where that leaves a gap open, also
+    those of effects at their best starts, which `tests` scores and which are then returned."""
+    drawn = replicas(linearisation)
+    answered, events = at_once(lambda: answers(linearisation, drawn), lambda: _events(case, linearisation, drawn))
+    lost = 0.0 if lossy is None else lossy.log_posterior - linearisation.fit.log_posterior
+    told = _Gains(gains(answered.scores), answered.null).usual().beside(events).beside(_without_law([lost], drawn))
+    of_forms = answered.by_chance()
+    detection = _detection(case, linearisation, told, of_forms)
+    if detection.p <= decisions.ALARM and detection.largest > decisions.PLAIN_TO_SEE:
+        return detection, None
+    score_tests = tuple(tests())
+    told = told.beside(_of_effects(case, linearisation, score_tests, drawn))
+    return _detection(case, linearisation, told, of_forms), score_tests
+
+
+def _detection(case: Case, linearisation: Linearisation, told: _Gains, by_form: FormScores) -> Detection:
+    """What these gains say of a gap, and the plant's own parameters."""
+    largest = float(np.max(told.seen, initial=0.0))
+    tail = tail_of(np.max(told.null, axis=0))
     chances = {
         "largest_gain": tail.probability(largest - _allowed(case)),
         "parameters_together": _prior_tail(case, linearisation.fit),
@@ -79,7 +85,21 @@ def detect(
     limit = decisions.ALARM / len(chances)  # each test has its share of the level (Bonferroni)
     moved = min(chances["parameters_together"], chances["parameter_furthest"]) <= limit
     rules = tuple(_rule(name, chance, limit) for name, chance in chances.items())
-    return Detection(p, tail, largest, moved, FormScores(tuple(found), by_form, null_forms.mean(axis=1)), rules)
+    return Detection(p, tail, largest, moved, by_form, rules)
+
+
+def _of_effects(case: Case, linearisation: Linearisation, score_tests: Sequence[ScoreTest], drawn: Array) -> _Gains:
+    """Those of effects, of which the ones in the equations count by first order."""
+    columns = _effect_columns(case, linearisation, score_tests)
+    scores, cross = linearisation.scores_of(columns), linearisation.slopes.T @ columns
+    null = null_gains(linearisation, scores, cross, columns.T @ drawn, drawn)
+    outside = [entry.gain for entry in score_tests if not case.library.carried(entry.effect)]
+    return _Gains(gains(scores), null).usual().beside(_without_law(outside, drawn))
+
+
+def _without_law(found: Sequence[float], drawn: Array) -> _Gains:
+    """Gains of what no replica has: frames that were lost, what acts on the way of a signal."""
+    return _Gains(np.array(found), np.zeros((len(found), drawn.shape[1])))
 
 
 def _allowed(case: Case) -> float:
@@ -97,43 +117,6 @@ def _prior_tail(case: Case, found: Fit) -> float:
     """The chance that all numbers that the plant file states went together so far from there."""
     count = len(away(found.hypothesis, found.free))
     return chi_squared_tail(count, prior_chi_squared(case, found.hypothesis, found.free))
-
-
-def form_scores(linearisation: Linearisation) -> FormScores:
-    """What every form gains beside a fit."""
-    found = forms(linearisation)
-    columns, drawn = _at_once(lambda: _form_columns(linearisation, found), lambda: replicas(linearisation))
-    scores, null = _gains_of(linearisation, columns, drawn)
-    usual = np.maximum(null.mean(axis=1), MEAN_GAIN * scatter_of_scores(linearisation, columns))
-    return FormScores(tuple(found), scores, usual)
-
-
-def scatter_of_scores(linearisation: Linearisation, columns: Array) -> Array:
-    """How much more the scores of columns (rows, k) scatter than white innovations would make them (k,).
-
-    (1)  J / I = sum over seconds b of (g_b - theta I_b)^2 / sum of I_b,   theta = sum of g_b / sum of I_b
-
-    with the score g_b and the information I_b of each second, the plant's coefficients taken out: the sandwich of White (1982) by blocks.
-    A disturbance that lasts makes innovations alike for a while, and a gain that much larger by chance.
-    """
-    own = columns - linearisation.slopes @ (linearisation.solve @ (linearisation.slopes.T @ columns))
-    begins = linearisation.seconds()
-    score = -np.add.reduceat(own * linearisation.w[:, None], begins, axis=0)
-    information = np.add.reduceat(own**2, begins, axis=0)
-    total = np.maximum(information.sum(axis=0), 1e-12)
-    theta = score.sum(axis=0) / total
-    return np.asarray(np.sum((score - theta * information) ** 2, axis=0) / total)
-
-
-def _at_once(*pieces: Callable[[], Any]) -> list[Any]:
-    """What the pieces return, in their order."""
-    return thread_map(lambda piece: piece(), pieces)
-
-
-def _gains_of(linearisation: Linearisation, columns: Array, drawn: Array) -> tuple[Scores, Array]:
-    """Scores of the columns (rows, k), and their gains in replicas (k, replicas)."""
-    scores = linearisation.scores_of(columns)
-    return scores, _null_gains(linearisation, columns, scores, drawn)
 
 
 def chi_squared_tail(count: int, value: float) -> float:
@@ -160,24 +143,8 @@ def moved_tail(case: Case, found: Fit) -> float:
     return min(1.0, len(moved) * float(mpmath.erfc(furthest / np.sqrt(2.0))))
 
 
-def gains(scores: Scores) -> Array:
-    """Gain of the log likelihood by each column alone (k,); 0 where the plant's coefficients imitate it."""
-    norm = np.diag(scores.gram)
-    counts = norm > decisions.LEAST_LEFT_SHARE * np.maximum(scores.raw, 1e-12)
-    return np.where(counts, 0.5 * scores.score**2 / np.maximum(norm, 1e-12), 0.0)
-
-
-def _null_gains(linearisation: Linearisation, columns: Array, scores: Scores, drawn: Array) -> Array:
-    """Gains (k, replicas)."""
-    share = linearisation.solve @ (linearisation.slopes.T @ columns)
-    score = columns.T @ drawn - share.T @ (linearisation.slopes.T @ drawn)
-    norm = np.diag(scores.gram)
-    counts = (norm > decisions.LEAST_LEFT_SHARE * np.maximum(scores.raw, 1e-12))[:, None]
-    return np.where(counts, 0.5 * score**2 / np.maximum(norm, 1e-12)[:, None], 0.0)
-
-
-def _events(case: Case, linearisation: Linearisation, drawn: Array) -> tuple[list[float], Array]:
-    """The largest gain of steps and pulses in time by target, in the log and in replicas (targets, replicas).
+def _events(case: Case, linearisation: Linearisation, drawn: Array) -> _Gains:
+    """The largest gain of steps and pulses in time of each target.
 
     Each gain counts in units of what that step or pulse usually gains without a gap: rounding at rest looks like steps.
     """
@@ -185,7 +152,8 @@ def _events(case: Case, linearisation: Linearisation, drawn: Array) -> tuple[lis
     targets = {disturbed_by(case, library.effects[name]) for name in library.candidates}
     known = sorted(target for target in targets if target is not None)
     pairs = thread_map(lambda target: _pulses(linearisation, drawn, target), known)
-    return [seen for seen, _ in pairs], np.array([np.zeros(drawn.shape[1]), *(null for _, null in pairs)])
+    null = np.array([found for _, found in pairs]).reshape(len(pairs), drawn.shape[1])
+    return _Gains(np.array([seen for seen, _ in pairs]), null)
 
 
 def _pulses(linearisation: Linearisation, drawn: Array, target: int) -> tuple[float, Array]:
@@ -228,15 +196,3 @@ def _effect_columns(case: Case, linearisation: Linearisation, score_tests: Seque
         return np.zeros((rows, 0))
     slopes = np.concatenate([run.dw.reshape(-1, len(places)) for run in runs if run.dw is not None])
     return np.asarray(slopes * [size_scale(library.effects[name].size) for name in values])
-
-
-def _form_columns(linearisation: Linearisation, found: Sequence[Form]) -> Array:
-    columns = np.zeros((len(linearisation.w), len(found)))
-    for target in sorted({form.target for form in found}):
-        chosen = [index for index, form in enumerate(found) if form.target == target]
-        values = [
-            np.stack([found[i].values[flight] for i in chosen], axis=1)
-            for flight in range(len(linearisation.filter_inputs))
-        ]
-        columns[:, chosen] = linearisation.answer([value.__getitem__ for value in values], target)
-    return columns

@@ -1,6 +1,6 @@
 """Where score tests are taken from: a fit, what projects its numbers out, and how the filter there answers small disturbances."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -69,16 +69,14 @@ class Linearisation:
 
     def scores_by(self, values: Sequence[Disturbances], target: int) -> Scores:
         """Scores of the answers to disturbances values[flight] (steps, k) of one target, see filter.py."""
-        gram, beside = self._met(values, {target: 1.0}, lambda E, part: (E.T @ E, E.T @ part), self._own)
+        gram, beside = self._met(values, {target: 1.0}, lambda E, part: (E.T @ E, E.T @ part), self.own)
         return self.scores(gram, beside[:, :-1].T, beside[:, -1])
 
     def gains_by(self, values: Sequence[Disturbances], push: Array) -> Array:
         """Gain of the log likelihood (k,) by each of the answers to disturbances of the plant's own states, `push` (states,) times the
         values, alone and in its own direction only."""
         pushed = {int(state): float(push[state]) for state in np.flatnonzero(push)}
-        squares, beside = self._met(
-            values, pushed, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self._own
-        )
+        squares, beside = self._met(values, pushed, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self.own)
         cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
         norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ self.pull - pull
@@ -113,6 +111,11 @@ class Linearisation:
             [found.reshape(-1, found.shape[2]) for found in thread_map(over, self.filter_inputs, self.runs, values)]
         )
 
+    def answers(self, flight: int, value: Disturbances, target: int) -> Iterator[tuple[NDArray[np.int64], Array]]:
+        """The same of one flight, some of its instants at a time: as Filter.respond yields them, in room that the next part takes."""
+        filter_input, run = self.filter_inputs[flight], self.runs[flight]
+        return self.filter.respond(filter_input, run, _weighed(value, [1.0]), [self._place(target)], self.case.slots)
+
     def _met(
         self,
         values: Sequence[Disturbances],
@@ -142,7 +145,7 @@ class Linearisation:
         return np.asarray(self.slopes.T @ self.w + self.case.pull_of(self.fit.hypothesis.theta))
 
     @cached_property
-    def _own(self) -> Array:
+    def own(self) -> Array:
         """The slopes with the innovations behind them (rows, free + 1)."""
         return np.column_stack([self.slopes, self.w])
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.unknown import Suspect
-from diagnosis.detect.detection import MEAN_GAIN, FormScores
+from diagnosis.detect.form_scores import MEAN_GAIN, FormScores
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.explain.curve import target_of

@@ -131,7 +131,13 @@ def seen() -> Seen:
     linearisation = plain_linearisation()
     tests = tuple(ScoreTest(name, {}, 0.0, 0.0, 0.0, 9.0) for name in linearisation.case.library.candidates)
     return Seen(
-        linearisation.case, None, plain_fit(), linearisation, tests, None, detect(linearisation.case, linearisation, ())
+        linearisation.case,
+        None,
+        plain_fit(),
+        linearisation,
+        tests,
+        None,
+        detect(linearisation.case, linearisation, tuple)[0],
     )
 
 

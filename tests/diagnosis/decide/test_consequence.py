@@ -9,7 +9,8 @@ from diagnosis import decisions
 from diagnosis.confirmation import of_consequence
 from diagnosis.decide.consequence import foreseen, foreseen_rules
 from diagnosis.decide.weighing import Explanations, Weighed, weigh
-from diagnosis.detect.detection import Detection, FormScores
+from diagnosis.detect.detection import Detection
+from diagnosis.detect.form_scores import FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted

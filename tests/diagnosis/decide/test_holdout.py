@@ -10,7 +10,8 @@ from diagnosis.confirmation import may_be_missing, of_consequence
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, with_held_out
 from diagnosis.decide.weighing import Explanations, Weighed, weigh
 from diagnosis.detect.curves import curves
-from diagnosis.detect.detection import Detection, FormScores
+from diagnosis.detect.detection import Detection
+from diagnosis.detect.form_scores import FormScores
 from diagnosis.detect.instants import happens
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail

@@ -10,7 +10,8 @@ from blind.calibration.fit import UNLEARNED
 from diagnosis.confirmation import confirmed_by
 from diagnosis.decide import prior
 from diagnosis.decide.weighing import Explanations, weigh
-from diagnosis.detect.detection import Detection, FormScores
+from diagnosis.detect.detection import Detection
+from diagnosis.detect.form_scores import FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
 from diagnosis.fit.evidence import FittedHypothesis

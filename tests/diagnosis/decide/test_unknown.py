@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.decide.unknown import class_gain, left_beside, suspects
-from diagnosis.detect.detection import FormScores
+from diagnosis.detect.form_scores import FormScores
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Scores
 from sim.added_effects import every_effect

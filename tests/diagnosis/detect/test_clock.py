@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.detect.detection import FormScores, form_scores
+from diagnosis.detect.form_scores import FormScores, form_scores
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.explain.improved import improved_plant

@@ -11,7 +11,7 @@ from tests.diagnosis.nominal import nominal_fit
 
 def detected(log: RunLog) -> Detection:
     case = arm_case(log)
-    return detect(case, linearised(case, nominal_fit(case)), ())
+    return detect(case, linearised(case, nominal_fit(case)), tuple)[0]
 
 
 @pytest.mark.parametrize(("sds", "moved"), [(1.0, False), (8.0, True)])

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from diagnosis.detect.detection import scatter_of_scores
+from diagnosis.detect.form_scores import products, scatter_of_scores
+from diagnosis.detect.linearisation import Linearisation
 from tests.diagnosis.arm import plain_linearisation
 
 KEPT = 0.9  # from row to row of 10 ms: forgotten in 0.1 s, a tenth of a block
@@ -18,6 +19,13 @@ def slow_columns(count: int) -> np.ndarray:
     return np.sin(rows * np.linspace(0.011, 0.031, 40) + np.arange(40))
 
 
+def scatter_with(linearisation: Linearisation, w: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """By innovations w, with the columns in two parts."""
+    known, half = replace(linearisation, w=w), len(w) // 2
+    parts = [(rows, columns[rows]) for rows in (np.arange(half), np.arange(half, len(w)))]
+    return scatter_of_scores(known, products(known, np.zeros((len(w), 0)), parts, columns.shape[1]))
+
+
 def scatter(kept: float, seeds: int) -> float:
     """The mean over forms and draws of innovations whose first correlation is `kept`."""
     linearisation = plain_linearisation()
@@ -26,7 +34,7 @@ def scatter(kept: float, seeds: int) -> float:
     for seed in range(seeds):
         white = np.random.default_rng(seed).standard_normal(count)
         w = lfilter([np.sqrt(1.0 - kept**2)], [1.0, -kept], white)
-        found.append(scatter_of_scores(replace(linearisation, w=w), columns).mean())
+        found.append(scatter_with(linearisation, w, columns).mean())
     return float(np.mean(found))
 
 
@@ -47,7 +55,5 @@ def test_an_effect_of_its_own_form_is_no_scatter() -> None:
     columns = slow_columns(len(linearisation.w))
     unit = columns[:, 0] / np.linalg.norm(columns[:, 0])
     white = np.random.default_rng(3).standard_normal(len(unit))
-    one, other = (
-        scatter_of_scores(replace(linearisation, w=w), columns[:, :1])[0] for w in (white, white - 30.0 * unit)
-    )
+    one, other = (scatter_with(linearisation, w, columns[:, :1])[0] for w in (white, white - 30.0 * unit))
     assert other == pytest.approx(one, rel=0.2)

@@ -3,7 +3,7 @@
 import pytest
 
 from diagnosis.decide.unknown import Suspect
-from diagnosis.detect.detection import FormScores, form_scores
+from diagnosis.detect.form_scores import FormScores, form_scores
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.explain.sparse import Term, form_text, sparse_form, suggestion
 from diagnosis.hypothesis.case import make_case

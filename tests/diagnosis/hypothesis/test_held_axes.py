@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.detect.detection import form_scores, gains
+from diagnosis.detect.form_scores import form_scores, gains
 from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.hypothesis.case import make_case
