@@ -58,7 +58,7 @@ def likely_steps(
     model = linearisation.case.library.bound.model
     entry = model.places.inputs[place]
     column = model.inputs.index(entry.variable)
-    push = _push(linearisation, column)
+    push = push_of(linearisation, column)
     if not (np.isfinite(push).all() and push.any()):
         return []
     way = _Rounded(column, push, kinds)
@@ -110,7 +110,7 @@ def _promises(linearisation: Linearisation, way: _Rounded, steps: Array) -> Arra
 
 
 def _sent(filter_input: FilterInput, column: int, pull: Array) -> _Sent:
-    u, h = filter_input.u[:, column], _durations_s(filter_input)
+    u, h = filter_input.u[:, column], durations_s(filter_input)
     begins = np.flatnonzero(np.diff(u, prepend=np.nan) != 0.0)
     return _Sent(u[begins], np.add.reduceat(pull * h, begins), np.add.reduceat(h * h, begins))
 
@@ -130,7 +130,7 @@ def _gains(linearisation: Linearisation, way: _Rounded, steps: Array, kinds: Seq
 def _disturbing(filter_input: FilterInput, column: int, steps: Array, kinds: Sequence[Kind]) -> Disturbances:
     """Errors of an input by steps (k,), each of its kind, over each of a filter input's own (instants, k): those that the rig has move the
     innovations as its answer says; what the model would add moves them the other way."""
-    errors, h = errors_of(filter_input.u[:, column], steps, kinds), _durations_s(filter_input)
+    errors, h = errors_of(filter_input.u[:, column], steps, kinds), durations_s(filter_input)
     return lambda part: np.asarray(steps * errors[part] * h[part, None])
 
 
@@ -150,11 +150,12 @@ def _called(name: str, rows: Sequence[Array], steps: Array, kinds: Sequence[Kind
     getattr(lib, name)(len(rows[0]), *told[: len(rows)], len(steps), *told[len(rows) :])
 
 
-def _durations_s(filter_input: FilterInput) -> Array:
+def durations_s(filter_input: FilterInput) -> Array:
+    """How long each instant's inputs are held (instants,)."""
     return np.append(np.diff(filter_input.t_s), 0.0)
 
 
-def _push(linearisation: Linearisation, column: int) -> Array:
+def push_of(linearisation: Linearisation, column: int) -> Array:
     """What a unit of an input adds to the plant's own states (states,) by the end of a row, a second of it:
 
     (1)  G = 1/h int_0^h e^(A s) ds B

@@ -75,12 +75,21 @@ class Linearisation:
     def gains_by(self, values: Sequence[Disturbances], push: Array) -> Array:
         """Gain of the log likelihood (k,) by each of the answers to disturbances of the plant's own states, `push` (states,) times the
         values, alone and in its own direction only."""
+        squares, beside = (sum(parts) for parts in zip(*self.beside_each(values, push), strict=True))
+        norm, score = self.alone(np.asarray(squares), np.asarray(beside))
+        return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
+
+    def beside_each(self, values: Sequence[Disturbances], push: Array) -> list[tuple[Array, Array]]:
+        """By flight the squares (k,) of those answers, and their products (k, free + 1) with the slopes and the innovations."""
         pushed = {int(state): float(push[state]) for state in np.flatnonzero(push)}
-        squares, beside = self._met(values, pushed, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self.own)
+        found = self._met_each(values, pushed, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self.own)
+        return [(squares, beside) for squares, beside in found]
+
+    def alone(self, squares: Array, beside: Array) -> tuple[Array, Array]:
+        """Squared norms (k,) and scores (k,) of columns by those sums over all flights, each beside the plant's coefficients alone."""
         cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
-        norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ self.pull - pull
-        return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
+        return squares - np.einsum("ij,ij->j", cross, share), share.T @ self.pull - pull
 
     def pulls(self, push: Array) -> list[Array]:
         """E'w by `push` (states,) added to the plant's own states over each step of each flight (steps,): for many disturbances at once."""
@@ -116,14 +125,14 @@ class Linearisation:
         filter_input, run = self.filter_inputs[flight], self.runs[flight]
         return self.filter.respond(filter_input, run, _weighed(value, [1.0]), [self._place(target)], self.case.slots)
 
-    def _met(
+    def _met_each(
         self,
         values: Sequence[Disturbances],
         targets: Mapping[int, float],
         terms: Callable[[Array, Array], tuple[Array, ...]],
         columns: Array,
-    ) -> tuple[Array, ...]:
-        """Sums over all flights and rows of what `terms` makes of the answers (rows, k) and of columns (rows, m), some rows at a time:
+    ) -> list[tuple[Array, ...]]:
+        """By flight the sums over its rows of what `terms` makes of the answers (rows, k) and of columns (rows, m), some rows at a time:
         each a multiple of the answers, so that those not disturbed yet would add nothing. Each target is disturbed by so many times the
         values."""
         sizes = [run.w.size for run in self.runs]
@@ -136,8 +145,17 @@ class Linearisation:
                     total[tuple(slice(size) for size in term.shape)] += term
             return sums
 
-        parts = thread_map(over, self.filter_inputs, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
-        return tuple(sum(flights) for flights in zip(*parts, strict=True))
+        return thread_map(over, self.filter_inputs, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
+
+    def _met(
+        self,
+        values: Sequence[Disturbances],
+        targets: Mapping[int, float],
+        terms: Callable[[Array, Array], tuple[Array, ...]],
+        columns: Array,
+    ) -> tuple[Array, ...]:
+        """The same sums over all flights."""
+        return tuple(sum(parts) for parts in zip(*self._met_each(values, targets, terms, columns), strict=True))
 
     @cached_property
     def pull(self) -> Array:

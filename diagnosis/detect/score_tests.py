@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.by_log import Part, part_of_finite, parts
 from diagnosis.detect.input_steps import Kind, likely_steps
+from diagnosis.detect.input_tries import promises
 from diagnosis.detect.instants import instants
 from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.waves import wave_starts
@@ -233,11 +234,31 @@ def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
     effects = [case.library.effects[name] for name in names]
     begun = thread_map(lambda effect: _ways(case, linearisation, effect), effects)
     ways = [(effect, way) for effect, found in zip(effects, begun, strict=True) for way in found]
-    tried = list(chain.from_iterable(thread_map(lambda way: along(case, linearisation, *way), ways)))
+    tried, ways = _first_told(linearisation, ways)
+    tried += chain.from_iterable(thread_map(lambda way: along(case, linearisation, *way), ways))
     steps = {effect.name for effect in effects if effect.size.role is Role.STEP}
     return [entry for entry in tried if entry.effect not in steps] + _each_best(
         entry for entry in tried if entry.effect in steps
     )
+
+
+def _first_told(
+    linearisation: Linearisation, ways: Sequence[tuple[Effect, list[Values]]]
+) -> tuple[list[ScoreTest], list[tuple[Effect, list[Values]]]]:
+    """Tries on the ways of inputs that are not worth a pass, as first order tells them, and what is left to try."""
+    each = [(effect, values) for effect, way in ways for values in way]
+    told, found, left = iter(promises(linearisation, each)), list[ScoreTest](), list[tuple[Effect, list[Values]]]()
+    for effect, way in ways:
+        kept = list[Values]()
+        for values in way:
+            promise = next(told)
+            if promise is None or promise.is_worth:
+                kept.append(values)
+            elif promise.power > 0.0:
+                z = float(np.sqrt(2.0 * max(promise.gain, 0.0)))
+                found.append(ScoreTest(effect.name, values, z, promise.gain, promise.absorbed, promise.power))
+        left += [(effect, kept)] if kept else []
+    return found, left
 
 
 def along(case: Case, linearisation: Linearisation, effect: Effect, way: Sequence[Values]) -> list[ScoreTest]:

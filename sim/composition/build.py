@@ -54,7 +54,7 @@ def paths_with(nominal: Model, values: Mapping[str, Values]) -> tuple[tuple[Inpu
     for effect in chosen:
         given = values[effect.name]
         if effect.applied is not None:
-            inputs.append(_memoryless(nominal, effect, given))
+            inputs.append(memoryless(nominal, effect, given))
         if effect.on_input is not None:
             inputs.append(effect.on_input(given))
         if effect.on_output is not None:
@@ -75,7 +75,8 @@ def _added(model: Model, effect: Effect) -> Model:
     return effect.edit(model, *effect.symbols)
 
 
-def _memoryless(nominal: Model, effect: Effect, values: Values) -> Memoryless:
+def memoryless(nominal: Model, effect: Effect, values: Values) -> Memoryless:
+    """The stage that an effect without memory is on the way of the inputs."""
     assert effect.applied is not None
     function = _applied(nominal, effect.name)
     numbers = [values[parameter.symbol] for parameter in effect.parameters]
