@@ -18,11 +18,11 @@ ALWAYS_INLINE void product(const filter_state *at, const matrix left, const int 
         UNROLLED for (int b = 0; b < ROW; b++) {
             if (!FILLED(at->states, b))
                 continue;
-            block sum = {0.0};
+            piece sum = {0.0};
             UNROLLED for (int m = 0; m < N; m++)
                 if (has[i][m])
-                    sum += left[i][m] * ((const block *)right[m])[b];
-            ((block *)to[i])[b] = sum;
+                    sum += left[i][m] * ((const piece *)right[m])[b];
+            ((piece *)to[i])[b] = sum;
         }
     }
 }

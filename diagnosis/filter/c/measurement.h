@@ -34,11 +34,11 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
 {
     filter_request *const r = at->request;
     const int64_t reading = step * N_OUTPUTS + output;
-    double PH[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0}, s = r->r[reading];
+    double PH[WIDTH] __attribute__((aligned(sizeof(piece)))) = {0.0}, s = r->r[reading];
     for (int n = 0; n < at->states.awake; n++)
         UNROLLED for (int b = 0; b < ROW; b++)
             if (H[at->states.order[n]] != 0.0 && FILLED(at->states, b))
-                ((block *)PH)[b] += ((block *)at->P[at->states.order[n]])[b] * H[at->states.order[n]];
+                ((piece *)PH)[b] += ((piece *)at->P[at->states.order[n]])[b] * H[at->states.order[n]];
     for (int n = 0; n < at->states.awake; n++)
         s += H[at->states.order[n]] * PH[at->states.order[n]];
     const double nu = r->y[reading] - predicted;
@@ -49,7 +49,7 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
         at->body.x[i] += K[i] * nu;
         UNROLLED for (int b = 0; b < ROW; b++)
             if (FILLED(at->states, b))
-                ((block *)at->P[i])[b] -= K[i] * ((block *)PH)[b];
+                ((piece *)at->P[i])[b] -= K[i] * ((piece *)PH)[b];
     }
     keep_gain(r, reading, K, H);
     const filter_correction given = {H, K, nu, 1.0 / sqrt(s), keep_innovation(r, reading, output, nu, s)};

@@ -120,17 +120,19 @@ static void bring_speed_slopes(filter_state *at, int axis)
     d->P[v][v] += d->brought[axis];
 }
 
-/* What noise brings a speed that spreads along g, which most states have no part in. */
-static void spread_noise_slopes(filter_state *at, int axis, const double *g)
+/* What noise brings a speed that spreads along g by instant, which most states have no part in. */
+static void spread_noise_slopes(filter_state *at, int axis, double g[INSTANTS][WIDTH])
 {
     int moved[N], count = 0;
     for (int n = 0; n < at->states.awake; n++)
-        if (g[at->states.order[n]] != 0.0)
+        if (g[0][at->states.order[n]] != 0.0 || g[1][at->states.order[n]] != 0.0)
             moved[count++] = at->states.order[n];
     EACH(at, d)
     for (int n = 0; n < count; n++)
-        for (int m = 0; m < count; m++)
-            d->P[moved[n]][moved[m]] += 0.5 * g[moved[n]] * g[moved[m]] * d->brought[axis];
+        for (int m = 0; m < count; m++) {
+            const int i = moved[n], k = moved[m];
+            d->P[i][k] += 0.5 * (g[0][i] * g[0][k] + g[1][i] * g[1][k]) * d->brought[axis];
+        }
 }
 
 /* What an innovation adds to Fisher's information. */

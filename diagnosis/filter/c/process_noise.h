@@ -64,17 +64,19 @@ static void speed_column(const filter_state *at, int v, double h_s, int k, doubl
 static void spread_noise(filter_state *at, int axis, double h_s, double noise)
 {
     const int v = AXIS_VELOCITY[axis];
-    for (int k = 0; k < INSTANTS; k++) {
-        double g[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0};
-        speed_column(at, v, h_s, k, g);
-        for (int n = 0; n < at->states.awake; n++) {
-            const int i = at->states.order[n];
-            UNROLLED for (int b = 0; b < ROW; b++)
-                if (g[i] != 0.0 && FILLED(at->states, b))
-                    ((block *)at->P[i])[b] += 0.5 * noise * g[i] * ((const block *)g)[b];
-        }
-        spread_noise_slopes(at, axis, g);
+    double g[INSTANTS][WIDTH] __attribute__((aligned(sizeof(piece)))) = {{0.0}};
+    for (int k = 0; k < INSTANTS; k++)
+        speed_column(at, v, h_s, k, g[k]);
+    for (int n = 0; n < at->states.awake; n++) {
+        const int i = at->states.order[n];
+        if (g[0][i] == 0.0 && g[1][i] == 0.0)
+            continue;
+        const double first = 0.5 * noise * g[0][i], last = 0.5 * noise * g[1][i];
+        UNROLLED for (int b = 0; b < ROW; b++)
+            if (FILLED(at->states, b))
+                ((piece *)at->P[i])[b] += first * ((const piece *)g[0])[b] + last * ((const piece *)g[1])[b];
     }
+    spread_noise_slopes(at, axis, g);
 }
 
 #endif

@@ -7,7 +7,8 @@
 #include "quick_exp.h"
 #include "substep.h"
 
-#define UNSURE 10.0 /* times what friction stops in a step, beyond which a speed's spread is no rest */
+#define UNSURE 10.0  /* times what friction stops in a step, beyond which a speed's spread is no rest */
+#define UNFELT 100.0 /* so many powers of e below: a doubt that is none, of numbers that a processor takes long over, as too small */
 
 /* The friction of each axis, and its doubt as noise on the speed: about v = 0 its level is in doubt for `rub` seconds. */
 static void doubt_friction(filter_state *at, substep *part)
@@ -24,7 +25,10 @@ static void doubt_friction(filter_state *at, substep *part)
         const double rest_s = at->request->rest_s, width = square * rest_s * rest_s + at->P[v][v];
         if (!(square > 0.0 && rub > 0.0))
             continue;
-        const double a_second = square * part->h_s * quick_exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
+        const double away = 0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12);
+        if (away > UNFELT)
+            continue;
+        const double a_second = square * part->h_s * quick_exp(-away);
         part->noise[v] += rub * a_second;
         doubt_slopes(at, a, a_second, width + 1e-12);
     }

@@ -7,12 +7,14 @@
 #include "filter.h"
 
 #define N N_STATES
-#define BLOCK 8 /* numbers worked on at a time */
+#define BLOCK 8 /* numbers worked on at a time that stand side by side: slopes by parameters, by noises */
+#define PIECE 4 /* numbers of a row of a matrix: rows are short, and larger pieces would be filled up with zeros */
 
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_alias));
-#define ROW ((N + BLOCK - 1) / BLOCK) /* blocks */
-#define WIDTH (ROW * BLOCK)
-typedef double matrix[N][WIDTH] __attribute__((aligned(sizeof(block)))); /* N by N, its rows filled up with zeros to whole blocks */
+typedef double piece __attribute__((vector_size(PIECE * sizeof(double)), may_alias));
+#define ROW ((N + PIECE - 1) / PIECE) /* pieces */
+#define WIDTH (ROW * PIECE)
+typedef double matrix[N][WIDTH] __attribute__((aligned(sizeof(piece)))); /* N by N, its rows filled up with zeros to whole pieces */
 
 /* States of effects that are off sleep: nothing moves them, and what is known of them is 0. Those that follow others (follow.h) are no
  * noise, which forgets. */
@@ -34,7 +36,7 @@ static void wake(awake_states *states, const filter_request *request)
     for (int i = 0; i < N; i++) {
         states->sleeps[i] = STATE_SWITCH[i] >= 0 && request->p[STATE_SWITCH[i] < 0 ? 0 : STATE_SWITCH[i]] == 0.0;
         states->follows[i] = FOLLOWS[i] && !states->sleeps[i] && request->forget[i] == 0.0;
-        states->empty[i / BLOCK] &= states->sleeps[i];
+        states->empty[i / PIECE] &= states->sleeps[i];
         if (!states->sleeps[i])
             states->order[states->awake++] = i;
     }
