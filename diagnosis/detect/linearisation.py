@@ -72,6 +72,16 @@ class Linearisation:
         gram, beside = self._met(values, {target: 1.0}, lambda E, part: (E.T @ E, E.T @ part), self.own)
         return self.scores(gram, beside[:, :-1].T, beside[:, -1])
 
+    def scores_apart(self, values: Sequence[Disturbances], target: int, spans: Sequence[slice]) -> list[Scores]:
+        """The same of some spans of the columns, each by itself: of none with columns of another."""
+
+        def terms(E: Array, part: Array) -> tuple[Array, ...]:
+            return E.T @ part, *(E[:, span].T @ E[:, span] for span in spans)
+
+        beside, *grams = self._met(values, {target: 1.0}, terms, self.own)
+        told = [beside[span] for span in spans]
+        return [self.scores(gram, own[:, :-1].T, own[:, -1]) for gram, own in zip(grams, told, strict=True)]
+
     def gains_by(self, values: Sequence[Disturbances], push: Array) -> Array:
         """Gain of the log likelihood (k,) by each of the answers to disturbances of the plant's own states, `push` (states,) times the
         values, alone and in its own direction only."""

@@ -123,10 +123,12 @@ class Filter:
         *,
         locked: Sequence[str] = (),
         wanted: Wanted = INNOVATIONS,
+        anew: NDArray[np.int64] | None = None,
     ) -> Pass | None:
-        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none.
+        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none. Where it is to begin `anew` again and
+        again, that has for each instant the row of x0 (rows, states) from which it does, or -1.
 
-        None where the state left all bounds or rattles without end: the parameters do not fit at all.
+        None where the state left all bounds or rattles without end: the parameters do not fit at all. What began anew so ends there.
         """
         columns, noises = wanted.columns, wanted.noises
         assert len(columns) <= self.lib.MAX_COLUMNS
@@ -140,6 +142,7 @@ class Filter:
                 "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
                 "column": np.array(columns, dtype=np.int32),
                 "slot": np.array(slots, dtype=np.int32),
+                "anew": anew,
             }
         )
         found = self._found(filter_input, width, wanted)

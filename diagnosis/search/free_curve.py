@@ -9,6 +9,7 @@ beside each step.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from diagnosis import decisions
 from diagnosis.detect.curves import Curve, curves
 from diagnosis.detect.linearisation import Linearisation, Scores, linearised
 from diagnosis.filter.filter_input import Added
+from diagnosis.filter.kalman import Disturbances
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit, fit
@@ -96,12 +98,12 @@ def _promised(linearisation: Linearisation, found: Sequence[Curve]) -> list[floa
     """What each curve gains in evidence, to first order."""
     gains = [0.0] * len(found)
     for target, places in _batches(found):
-        answers = _answers(linearisation, [found[place] for place in places], target)
-        begin = 0
-        for place in places:
-            end = begin + found[place].weights
-            gains[place] = _weights(linearisation.scores_of(answers[:, begin:end]), np.zeros(end - begin)).evidence
-            begin = end
+        batch = [found[place] for place in places]
+        ends = np.cumsum([0, *(curve.weights for curve in batch)]).tolist()
+        spans = [slice(begin, end) for begin, end in pairwise(ends)]
+        each = linearisation.scores_apart(_values(linearisation, batch, target), target, spans)
+        for place, scores in zip(places, each, strict=True):
+            gains[place] = _weights(scores, np.zeros(found[place].weights)).evidence
     return gains
 
 
@@ -184,11 +186,18 @@ def _penalised(reached: _Reached, weights: _Weights) -> float:
 
 def _answers(linearisation: Linearisation, found: Sequence[Curve], target: int) -> Array:
     """What the weights of curves of one target, side by side, do to the whitened innovations (rows, weights)."""
-    moves, values = target < len(linearisation.case.library.states), []
+    return linearisation.answer(_values(linearisation, found, target), target)
+
+
+def _values(linearisation: Linearisation, found: Sequence[Curve], target: int) -> list[Disturbances]:
+    """What those weights add by flight (steps, weights)."""
+    moves, values = target < len(linearisation.case.library.states), list[Disturbances]()
     for flight, filter_input in enumerate(linearisation.filter_inputs):
         value = np.concatenate([curve.at(flight, filter_input.t_s) for curve in found], axis=1)
-        values.append(value * np.append(np.diff(filter_input.t_s), 0.0)[:, None] if moves else value)
-    return linearisation.answer([value.__getitem__ for value in values], target)
+        if moves:
+            value *= np.append(np.diff(filter_input.t_s), 0.0)[:, None]
+        values.append(value.__getitem__)
+    return values
 
 
 def _added(case: Case, curve: Curve, b: Array) -> Case:

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
-from diagnosis.filter.kalman import Noise
+from diagnosis.filter.kalman import Noise, Pass
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, filter_input_under, noise_of, start_under
 from diagnosis.library.effect_library import CompiledFilter
@@ -54,25 +54,62 @@ def predictions(
     found = np.full((len(flight.log.t_s), outputs), np.nan)
     if run is None:
         return found
-    lateness = _lateness(case, compiled, hypothesis.effects)
-    none = np.zeros_like(noise.q)
-    ahead = Noise(none, np.zeros_like(noise.rub), none, none, noise.forget, 0.0)
+    lateness, t_s = _lateness(case, compiled, hypothesis.effects), flight.log.t_s
+    spans = [FreeRun(first, first, last) for first, last in windows(t_s, second_s)] if spans is None else spans
+    spans = [span for span in spans if t_s[span.start] >= t_s[0] + settled_after_s(t_s, second_s)]
+    stretches = [_stretch(filter_input, t_s, span, max(lateness)) for span in spans]
+    stretches = [stretch for stretch in stretches if stretch.begin >= 0]
     slots = [place if place < outputs else -1 for place in range(len(library.outputs))]
-    t_s = flight.log.t_s
-    for span in [FreeRun(first, first, last) for first, last in windows(t_s, second_s)] if spans is None else spans:
-        begin = int(np.searchsorted(filter_input.t_s, t_s[span.start] - max(lateness) + 1e-9, side="right")) - 1
-        end = int(np.searchsorted(filter_input.t_s, t_s[span.last - 1] + 1e-9, side="right"))
-        if begin < 0 or t_s[span.start] < t_s[0] + settled_after_s(t_s, second_s):
+
+    def free(part: FilterInput, begins: NDArray[np.int64], anew: NDArray[np.int64]) -> Pass | None:
+        return chosen.run(part, given, run.filtered[begins], _sure(noise), slots, locked=flight.locked, anew=anew)
+
+    for stretch, y in zip(stretches, _left_alone(unforeseen_input, stretches, outputs, free), strict=True):
+        if not np.isfinite(y).all():
             continue
-        part = _unseen(unforeseen_input, begin, end, outputs)
-        free = chosen.run(part, given, run.filtered[begin], ahead, slots, locked=flight.locked)
-        if free is None:
-            continue
-        y, then = -free.w * np.sqrt(free.s), t_s[span.start : span.last]
-        seen = np.column_stack([np.interp(then - lateness[k], part.t_s, y[:, k]) for k in range(outputs)])
+        span, known_s = stretch.span, filter_input.t_s[stretch.begin : stretch.end]
+        then = t_s[span.start : span.last]
+        seen = np.column_stack([np.interp(then - lateness[k], known_s, y[:, k]) for k in range(outputs)])
         seen = _through_sensors(case, hypothesis.effects, flight.log.y[span.start], seen)
         found[span.first : span.last] = seen[span.first - span.start :]
     return found
+
+
+class _Stretch(NamedTuple):
+    """The instants of a filter input, from `begin`, below 0 where readings are older than the log, up to `end`, that a free run needs."""
+
+    span: FreeRun
+    begin: int
+    end: int
+
+
+def _stretch(filter_input: FilterInput, t_s: Array, span: FreeRun, oldest_s: float) -> _Stretch:
+    begin = int(np.searchsorted(filter_input.t_s, t_s[span.start] - oldest_s + 1e-9, side="right")) - 1
+    return _Stretch(span, begin, int(np.searchsorted(filter_input.t_s, t_s[span.last - 1] + 1e-9, side="right")))
+
+
+def _left_alone(
+    filter_input: FilterInput,
+    stretches: Sequence[_Stretch],
+    outputs: int,
+    free: Callable[[FilterInput, NDArray[np.int64], NDArray[np.int64]], Pass | None],
+) -> list[Array]:
+    """What is read over each stretch (instants, outputs) by one run, `free`, that begins anew at each; NaN from where it is lost."""
+    if not stretches:
+        return []
+    instants = np.concatenate([np.arange(stretch.begin, stretch.end) for stretch in stretches])
+    firsts = np.cumsum([0, *(stretch.end - stretch.begin for stretch in stretches[:-1])])
+    anew = np.full(len(instants), -1)
+    anew[firsts] = np.arange(len(stretches))
+    run = free(_unseen(filter_input, instants, outputs), instants[firsts], anew)
+    assert run is not None  # what begins anew fails by stretches
+    return np.split(-run.w * np.sqrt(run.s), firsts[1:])
+
+
+def _sure(noise: Noise) -> Noise:
+    """That of a plant which nothing drives, from a state that is known."""
+    none = np.zeros_like(noise.q)
+    return Noise(none, np.zeros_like(noise.rub), none, none, noise.forget, 0.0)
 
 
 def settled_after_s(t_s: Array, second_s: float) -> float:
@@ -116,14 +153,14 @@ def _lateness(case: Case, compiled: CompiledFilter, effects: Mapping[str, Values
     return found
 
 
-def _unseen(filter_input: FilterInput, begin: int, end: int, outputs: int) -> FilterInput:
-    """A stretch of a filter input whose readings are nothing but questions."""
-    count = end - begin
+def _unseen(filter_input: FilterInput, instants: NDArray[np.int64], outputs: int) -> FilterInput:
+    """Some instants of a filter input whose readings are nothing but questions."""
+    count = len(instants)
     y = np.full((count, filter_input.y.shape[1]), np.nan)
     y[:, :outputs] = 0.0
     return FilterInput(
-        filter_input.t_s[begin:end],
-        filter_input.u[begin:end],
+        filter_input.t_s[instants],
+        filter_input.u[instants],
         y,
         r=np.full_like(y, UNSEEN_VARIANCE),
         read=y,

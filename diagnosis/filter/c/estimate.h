@@ -26,8 +26,8 @@ typedef struct {
     noise_slopes noises;
 } filter_state;
 
-/* Before the first reading: the start asked for, as sure as asked for. */
-static void start(filter_state *at, filter_request *request)
+/* Before the first reading: the start x0 asked for, as sure as asked for. */
+static void start(filter_state *at, filter_request *request, const double *x0)
 {
     at->request = request;
     at->j = (jacobians){{0.0}, {0.0}, {0.0}, {0.0}};
@@ -37,7 +37,7 @@ static void start(filter_state *at, filter_request *request)
     start_noise_slopes(&at->noises, request, &at->states);
     for (int i = 0; i < N; i++) {
         at->following[i].z = -1.0;
-        at->body.x[i] = request->x0[i];
+        at->body.x[i] = x0[i];
         for (int j = 0; j < WIDTH; j++) {
             at->A[i][j] = at->square[i][j] = at->FP[i][j] = at->PF[i][j] = 0.0;
             at->F[i][j] = i == j;
@@ -52,7 +52,6 @@ static void start(filter_state *at, filter_request *request)
     for (int a = 0; a < AXES; a++)
         at->body.sign[a] = at->body.move[a] = 0.0;
     at->events = 0;
-    request->log_likelihood = 0.0;
 }
 
 /* The inputs that are held from an instant on, within their limits. */

@@ -53,26 +53,51 @@ static void advance_to_next(filter_state *at, int64_t step)
     }
 }
 
-/* Returns the number of instants done; fewer than asked when the state left all bounds, or rattles in nearly every step. */
+/* Whether a run, or a stretch of it, begins at a step. */
+static bool begins(const filter_request *r, int64_t step) { return r->anew ? r->anew[step] >= 0 : step == 0; }
+
+/* Whether the state left all bounds, or rattles in nearly every of `count` steps. */
+static bool is_lost(const filter_state *at, int64_t count)
+{
+    bool lost = at->events > EVENTS_ALLOWED + EVENTS_A_STEP * count;
+    for (int i = 0; i < N; i++)
+        lost |= !(fabs(at->body.x[i]) < 1e9);
+    return lost;
+}
+
+/* A stretch from `first` up to where the next begins; returns the instant before which it ended. */
+static int64_t run_from(filter_state *at, filter_request *request, int64_t first)
+{
+    start(at, request, request->x0 + (request->anew ? request->anew[first] * N : 0));
+    for (int64_t step = first;; step++) {
+        hold_inputs(at, step);
+        measure(at, step);
+        events_settle(at->body.x, at->body.sign, at->body.move, request->t_s[step], at->u, at->c);
+        if (step == first) /* how fast the states are, before any step has told */
+            model_state_slopes(request->t_s[step], at->body.x, at->u, at->c, at->body.sign, at->j.A);
+        const bool last = step + 1 == request->steps || begins(request, step + 1);
+        if (!last)
+            advance_to_next(at, step);
+        if (is_lost(at, step - first))
+            return step;
+        if (last)
+            return step + 1;
+    }
+}
+
+/* Returns the number of instants done, fewer than asked where the state was lost and nothing begins anew. */
 int32_t filter_run(filter_request *request)
 {
     static _Thread_local filter_state at;
     if (request->columns > MAX_COLUMNS)
         return -1;
-    start(&at, request);
-    for (int64_t step = 0; step < request->steps; step++) {
-        hold_inputs(&at, step);
-        measure(&at, step);
-        events_settle(at.body.x, at.body.sign, at.body.move, request->t_s[step], at.u, at.c);
-        if (step == 0) /* how fast the states are, before any step has told */
-            model_state_slopes(request->t_s[0], at.body.x, at.u, at.c, at.body.sign, at.j.A);
-        if (step + 1 < request->steps)
-            advance_to_next(&at, step);
-        for (int i = 0; i < N; i++)
-            if (!(fabs(at.body.x[i]) < 1e9))
-                return (int32_t)step;
-        if (at.events > EVENTS_ALLOWED + EVENTS_A_STEP * step)
+    request->log_likelihood = 0.0;
+    for (int64_t step = 0; step < request->steps;) {
+        step = run_from(&at, request, step);
+        if (step < request->steps && !request->anew)
             return (int32_t)step;
+        while (step < request->steps && !begins(request, step))
+            step++;
     }
     finish_slopes(&at.slopes, request);
     finish_noise_slopes(&at.noises, request);

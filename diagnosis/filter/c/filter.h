@@ -9,13 +9,15 @@ enum { MAX_COLUMNS = 256, MAX_NOISES = 64 };
 /* A filter input of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
  *
  * Whitened innovations w and their slopes dw go to the row of the instant, the outputs to their slots. A measurement whose place or slot
- * is below 0 moves the state, but nothing is kept of it and it does not count in the likelihood. */
+ * is below 0 moves the state, but nothing is kept of it and it does not count in the likelihood. Where all begins anew again and again,
+ * each stretch ends before the next begins, the times of both may overlap, and one that fails is left as far as it came. */
 typedef struct {
     int64_t steps;
     int32_t columns, slots, noises;
     const double *t_s, *u, *y, *r;           /* [steps], [steps][N_INPUTS], [steps][N_OUTPUTS] measured, their variances */
     const int64_t *row, *place;              /* [steps]: where the states go, [steps][N_OUTPUTS]: where the results go; or -1 */
     const double *p, *x0, *p0, *q;           /* [N_PARAMETERS]; [N_STATES]: start, its variance, noise intensity */
+    const int64_t *anew;                     /* [steps]: the row of x0 from which all begins anew there, or -1; NULL: at the first only */
     const double *further;                   /* [steps][N_STATES] further variance over each step, or NULL */
     const double *added;                     /* [steps][N_STATES] what is added to each state over each step, or NULL */
     const double *forget;                    /* [N_STATES]: the rate, in 1/s, at which a state that is noise alone decays; 0 for others */
