@@ -14,6 +14,7 @@ from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Pass
+from diagnosis.hypothesis.hypothesis import coefficients
 from jobs.thread_map import thread_map
 from sim.kernel.reference import reference
 from toolchain.host import FAST_FLAGS, build_shared, load_shared
@@ -160,11 +161,13 @@ def push_of(linearisation: Linearisation, column: int) -> Array:
 
     (1)  G = 1/h int_0^h e^(A s) ds B
 
-    A and B the slopes of the rates, means along the flights; it shows in each state that it drives, at once or through others.
+    A and B the slopes of the rates as fitted, means along the flights; it shows in each state that it drives, at once or through others.
     """
-    model, own = linearisation.case.library.bound.model, len(linearisation.case.library.states)
+    case = linearisation.case
+    model, own = case.library.bound.model, len(case.library.states)
     A, B = np.zeros((own, own)), np.zeros(own)
-    slopes, p, signs = reference(model), linearisation.case.library.bound.p, np.zeros(len(model.axes))
+    p = coefficients(case, case.library.plain, linearisation.fit.hypothesis.with_effects({}))[: case.library.own]
+    slopes, signs = reference(model), np.zeros(len(model.axes))
     along = [
         moment for log in zip(linearisation.filter_inputs, linearisation.runs, strict=True) for moment in _moments(*log)
     ]

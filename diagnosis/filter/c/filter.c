@@ -65,8 +65,8 @@ static bool is_lost(const filter_state *at, int64_t count)
     return lost;
 }
 
-/* A stretch from `first` up to where the next begins; returns the instant before which it ended. */
-static int64_t run_from(filter_state *at, filter_request *request, int64_t first)
+/* A stretch from `first` up to where the next begins; returns how many instants of all are done then, fewer where the state was lost. */
+static int64_t run_from(filter_state *at, filter_request *request, int64_t first, bool *lost)
 {
     start(at, request, request->x0 + (request->anew ? request->anew[first] * N : 0));
     for (int64_t step = first;; step++) {
@@ -78,10 +78,9 @@ static int64_t run_from(filter_state *at, filter_request *request, int64_t first
         const bool last = step + 1 == request->steps || begins(request, step + 1);
         if (!last)
             advance_to_next(at, step);
-        if (is_lost(at, step - first))
-            return step;
-        if (last)
-            return step + 1;
+        *lost = is_lost(at, step - first);
+        if (last || *lost)
+            return *lost ? step : step + 1;
     }
 }
 
@@ -93,10 +92,11 @@ int32_t filter_run(filter_request *request)
         return -1;
     request->log_likelihood = 0.0;
     for (int64_t step = 0; step < request->steps;) {
-        step = run_from(&at, request, step);
-        if (step < request->steps && !request->anew)
+        bool lost = false;
+        step = run_from(&at, request, step, &lost);
+        if (lost && !request->anew)
             return (int32_t)step;
-        while (step < request->steps && !begins(request, step))
+        for (step += lost; step < request->steps && !begins(request, step);)
             step++;
     }
     finish_slopes(&at.slopes, request);

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.filter.filter_input import Added, spread
+from diagnosis.filter.filter_input import Added, FilterInput, spread
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass, slope_of
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.hypothesis.case import Case, make_case
@@ -169,6 +169,38 @@ def test_an_effect_of_no_size_is_as_likely_as_none(request: pytest.FixtureReques
         }
         none = settled.with_effects({**settled.effects, name: values})
         assert likelihood_of(case, none) == pytest.approx(plain, abs=2.0), name
+
+
+def test_what_begins_anew_is_as_runs_of_their_own() -> None:
+    # Truth: three runs, the second of which begins before the first ends; a fourth that begins beyond all bounds ends there alone.
+    arm = plain_linearisation()
+    (flight,) = arm.case.flights
+    whole, hypothesis = flight.filter_input, arm.fit.hypothesis
+    compiled = arm.case.library.compiled(hypothesis.effects)
+    p, noise = coefficients(arm.case, compiled, hypothesis), noise_of(arm.case, compiled, flight, hypothesis)
+    spans, lost = [slice(300, 420), slice(400, 500), slice(700, 800)], slice(500, 600)
+
+    def part(chosen: list[slice]) -> FilterInput:
+        rows = np.concatenate([np.arange(one.start, one.stop) for one in chosen])
+        arrays = {name: getattr(whole, name)[rows] for name in ("t_s", "u", "y", "r", "read", "standing", "untold_s")}
+        place = np.tile(np.arange(len(rows))[:, None], (1, whole.y.shape[1]))
+        return replace(whole, **arrays, row=np.arange(len(rows)), place=place, rows=len(rows))
+
+    def run(chosen: list[slice], x0: np.ndarray, anew: np.ndarray | None) -> Pass:
+        found = compiled.filter.run(part(chosen), p, x0, noise, arm.case.slots, anew=anew)
+        assert found is not None
+        return found
+
+    starts = arm.runs[0].filtered[[one.start for one in spans]]
+    own = [run([one], x0, None) for one, x0 in zip(spans, starts, strict=True)]
+    anew, begins = np.full(420, -1), {0: 0, 120: 1, 220: 3, 320: 2}
+    anew[list(begins)] = list(begins.values())
+    beyond = np.full_like(starts[:1], 1e12)
+    together = run([*spans[:2], lost, spans[2]], np.concatenate([starts, beyond]), anew)
+    for one, rows in zip(own, (slice(0, 120), slice(120, 220), slice(320, 420)), strict=True):
+        np.testing.assert_array_equal(together.w[rows], one.w)
+        np.testing.assert_array_equal(together.filtered[rows], one.filtered)
+    assert np.isnan(together.w[221:320]).all()
 
 
 def changed(case: Case, hypothesis: Hypothesis, name: str) -> tuple[Pass, np.ndarray, np.ndarray]:
