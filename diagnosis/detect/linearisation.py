@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Filter, Pass, columns_of
-from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
+from diagnosis.fit.gauss_newton import Fit, flat_slopes, likelihood, stacked
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import filter_input_under, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, filter_input_under, passes
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
@@ -235,3 +235,15 @@ def linearised(case: Case, fit: Fit) -> Linearisation:
         ),
         filter=compiled.filter,
     )
+
+
+def answering(case: Case, hypothesis: Hypothesis) -> Linearisation | None:
+    """The same of a hypothesis of which nothing is fitted: answers alone, beside no coefficients; None where it cannot be filtered."""
+    compiled = case.library.compiled(hypothesis.effects)
+    runs = passes(case, hypothesis, gains=True)
+    if runs is None:
+        return None
+    w, none = stacked(runs), np.zeros((0, 0))
+    fit = Fit(hypothesis, likelihood(runs), -np.inf, (), none, np.zeros(0))
+    inputs = tuple(filter_input_under(case, compiled, flight, hypothesis.over(flight)) for flight in case.flights)
+    return Linearisation(case, fit, w, np.zeros((len(w), 0)), none, tuple(runs), inputs, compiled.filter)

@@ -1,6 +1,7 @@
-"""Numbers by which the likelihood is too rough for slopes: values beside one another, of which the likeliest is taken."""
+"""Numbers by which the likelihood is too rough for slopes: values beside one another, of which the likeliest is taken: of steps of an input
+to first order, as these are many, where a pass bears out the best of them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,13 +10,16 @@ from diagnosis import decisions
 from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.search.near_steps import NearSteps, near_steps
 from sim.effect import Effect, EffectParameter, Role, Values
 
 Array = NDArray[np.float64]
+Tell = Callable[[Sequence[Hypothesis]], list[float]]  # the log likelihood of each, but for what all have alike
 VALUES_AT_ONCE = 13  # values at a time
 # Shares of a step in which a likelier one is looked for, at first and once the rest fits: some hundred steps of a range tell one to a
 # hundred-thousandth.
 POLISHING, STEP_FINELY = (0.2, 0.03, 0.005), (1e-3, 2e-4, 4e-5)
+LIKE_TOLD = 0.25  # of what first order tells that a pass may tell otherwise: passes are linear to a tenth, but where an axis sticks
 PLAINLY = 0.005  # of a step, as a share, in which its multiples are looked for where steps that lie beside theirs lie
 # Times a step, to which it follows what else changes about it: beyond, it is another.
 LEAST_FOLLOWED, MOST_FOLLOWED = 0.5, 2.0
@@ -29,20 +33,46 @@ def is_rough(case: Case, name: str) -> bool:
 def polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float]) -> Hypothesis:
     """The start with the likeliest size near it, where slopes do not lead to it; steps as they lie, or at their multiples where that is no
     less likely than what such a shape costs."""
-    found = start
+    tell, found = _teller(case, near_steps(case, start, effect)), start
     for reach in reaches:
-        found = likeliest_size(case, found, effect, np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE))
+        factors = np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE)
+        found = _best(tell, found, _sizes(case, found, effect, factors))
     shapes = [p for p in case.library.effects[effect].parameters if p.rough and not p.is_size]
-    found = _reshaped(case, found, effect, shapes)
-    plain = _at_multiples(case, start, found, effect, reaches)
-    if plain is None:
-        return found
-    value, plainly = likelihoods(case, [found, plain])
-    return plain if plainly > value - decisions.SHAPE_COST else found
+    found = _reshaped(case, tell, found, effect, shapes)
+    plain = _at_multiples(case, tell, start, found, effect, reaches)
+    tried = [start, found] if plain is None else [start, found, plain]
+    before, value, *plainly = likelihoods(case, tried)
+    if plain is not None and plainly[0] > max(value, before) - decisions.SHAPE_COST:
+        return plain
+    return found if value >= before else start
+
+
+def _teller(case: Case, near: NearSteps | None) -> Tell:
+    """How likely hypotheses are: by a pass for each, or near one by what that tells of others."""
+
+    def by_passes(hypotheses: Sequence[Hypothesis]) -> list[float]:
+        return likelihoods(case, hypotheses)
+
+    def by_first_order(hypotheses: Sequence[Hypothesis]) -> list[float]:
+        assert near is not None
+        told = near.likelihoods(hypotheses)
+        best = int(np.argmax(told))
+        there = by_passes([hypotheses[best]])[0] - near.log_likelihood
+        borne_out = abs(there - told[best]) <= decisions.TAKEN_IN + LIKE_TOLD * abs(told[best])
+        return told if borne_out else by_passes(hypotheses)
+
+    return by_passes if near is None else by_first_order
+
+
+def _best(tell: Tell, start: Hypothesis, tried: Sequence[Hypothesis]) -> Hypothesis:
+    """The likeliest of what is tried, the first of those alike; the start where none can be filtered."""
+    values = tell(tried)
+    best = int(np.argmax(values))
+    return tried[best] if values[best] > -np.inf else start
 
 
 def _at_multiples(
-    case: Case, start: Hypothesis, found: Hypothesis, name: str, reaches: Sequence[float]
+    case: Case, tell: Tell, start: Hypothesis, found: Hypothesis, name: str, reaches: Sequence[float]
 ) -> Hypothesis | None:
     """What was found with steps at their multiples; None where they are there, or an effect has none that may lie elsewhere.
 
@@ -54,13 +84,13 @@ def _at_multiples(
         return None
     plain = found.with_value(name, shift.symbol, 0.0)
     tried = [start.effects[name][size], *_where_they_lie(case, effect, found.effects[name])]
-    plain = _likeliest_value(case, plain, name, size, tried)
+    plain = _likeliest_value(tell, plain, name, size, tried)
     others = [p for p in effect.parameters if p.rough and not p.is_size and p is not shift]
     for wide in (reaches if reaches[0] > PLAINLY else (PLAINLY, *reaches), reaches[1:]):
         for reach in wide:
             values = plain.effects[name][size] * np.linspace(1.0 - reach, 1.0 + reach, VALUES_AT_ONCE)
-            plain = _likeliest_value(case, plain, name, size, values.tolist())
-        plain = _reshaped(case, plain, name, others)
+            plain = _likeliest_value(tell, plain, name, size, values.tolist())
+        plain = _reshaped(case, tell, plain, name, others)
     return plain
 
 
@@ -73,16 +103,15 @@ def _where_they_lie(case: Case, effect: Effect, values: Values) -> list[float]:
     return [other for other in found if other <= effect.size.upper]
 
 
-def _reshaped(case: Case, start: Hypothesis, name: str, shapes: Sequence[EffectParameter]) -> Hypothesis:
+def _reshaped(case: Case, tell: Tell, start: Hypothesis, name: str, shapes: Sequence[EffectParameter]) -> Hypothesis:
     """The start with the likeliest of an effect's rough shapes, each over its whole range, then beside that with steps that follow."""
     for shape in shapes:
         values = np.linspace(shape.lower, shape.upper, VALUES_AT_ONCE)
-        start = _likeliest_of(case, start, name, shape, values)
+        start = _likeliest_value(tell, start, name, shape.symbol, [start.effects[name][shape.symbol], *values.tolist()])
         beside = start.effects[name][shape.symbol] + (values[1] - values[0]) * np.linspace(-1.0, 1.0, VALUES_AT_ONCE)
         near = np.clip(beside, shape.lower, shape.upper).tolist()
         tried = [other for value in near for other in _following(case, start, name, shape.symbol, value)]
-        best, value = likeliest(case, [start, *tried])
-        start = best if value > -np.inf else start
+        start = _best(tell, start, [start, *tried])
     return start
 
 
@@ -114,17 +143,16 @@ def _edge(effect: Effect, values: Values, level: float, side: float) -> float:
     return level + side * (0.5 + values[effect.symbol(Role.HOLD)]) - values[effect.symbol(Role.SHIFT)]
 
 
-def _likeliest_of(case: Case, start: Hypothesis, name: str, parameter: EffectParameter, values: Array) -> Hypothesis:
-    """The start with the likeliest of its own and these values of a parameter."""
-    tried = [start.effects[name][parameter.symbol], *values.tolist()]
-    return _likeliest_value(case, start, name, parameter.symbol, tried)
-
-
 def likeliest_size(case: Case, start: Hypothesis, effect: str, factors: Array) -> Hypothesis:
     """The start with that of the factors on an effect's size that the logs find likeliest."""
-    size = start.effects[effect][case.library.effects[effect].size.symbol]
-    best, value = likeliest(case, [_sized(case, start, effect, size * factor) for factor in factors.tolist()])
+    best, value = likeliest(case, _sizes(case, start, effect, factors))
     return best if value > -np.inf else start
+
+
+def _sizes(case: Case, start: Hypothesis, effect: str, factors: Array) -> list[Hypothesis]:
+    """The start with each of the factors on an effect's size."""
+    size = start.effects[effect][case.library.effects[effect].size.symbol]
+    return [_sized(case, start, effect, size * factor) for factor in factors.tolist()]
 
 
 def _sized(case: Case, start: Hypothesis, name: str, size: float) -> Hypothesis:
@@ -145,10 +173,9 @@ def _mean_command(case: Case, place: str) -> float:
     return float(np.mean(np.concatenate([flight.filter_input.u[:, column] for flight in case.flights])))
 
 
-def _likeliest_value(case: Case, start: Hypothesis, effect: str, symbol: str, values: Sequence[float]) -> Hypothesis:
+def _likeliest_value(tell: Tell, start: Hypothesis, effect: str, symbol: str, values: Sequence[float]) -> Hypothesis:
     """The start with that of the values of one number of an effect that the logs find likeliest."""
-    tried = [
-        start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: value}}) for value in values
-    ]
-    best, value = likeliest(case, tried)
-    return best if value > -np.inf else start
+    own = start.effects[effect]
+    return _best(
+        tell, start, [start.with_effects({**start.effects, effect: {**own, symbol: value}}) for value in values]
+    )
