@@ -11,7 +11,7 @@ from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.detection import Detection
 from diagnosis.detect.linearisation import Linearisation
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.explain.curve import Shape
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit

@@ -10,7 +10,8 @@ from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.detect.detection import detect
 from diagnosis.detect.linearisation import Linearisation, linearised
-from diagnosis.detect.score_tests import ScoreTest, score_effects
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.fit.between_rows import between_rows, held_beside, with_commands
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
 from diagnosis.fit.gauss_newton import Fit, fit

@@ -14,7 +14,7 @@ from diagnosis.detect.form_scores import MEAN_GAIN, FormScores, answers, gains, 
 from diagnosis.detect.instants import disturbed_by
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.replicas import Tail, replicas, tail_of
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.fit.gauss_newton import Fit, away, prior_chi_squared, size_scale
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes

@@ -36,7 +36,7 @@ class Promise:
 def promises(linearisation: Linearisation, tries: Sequence[Way]) -> list[Promise | None]:
     """What each of the tries promises; None of one that is on no input's way alone, or changes commands at instants of its own."""
     found: list[Promise | None] = [None] * len(tries)
-    columns = [_column(linearisation, *way) for way in tries]
+    columns = [_column(linearisation, effect) for effect, _ in tries]
     for column in sorted({column for column in columns if column is not None}):
         asked = [place for place, of in enumerate(columns) if of == column]
         changes = [_changes(linearisation, column, *tries[place]) for place in asked]
@@ -48,7 +48,7 @@ def promises(linearisation: Linearisation, tries: Sequence[Way]) -> list[Promise
     return found
 
 
-def _column(linearisation: Linearisation, effect: Effect, values: Values) -> int | None:
+def _column(linearisation: Linearisation, effect: Effect) -> int | None:
     """The input whose way an effect is on; None of other effects, and of steps, which hit or miss as a whole."""
     model = linearisation.case.library.bound.model
     entry = model.places.inputs.get(effect.place)

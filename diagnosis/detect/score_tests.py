@@ -1,65 +1,29 @@
 """Score tests of all effects: how much of what is left a signature explains once the plant's own coefficients have had their share."""
 
-from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, replace
-from itertools import chain, product
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import decisions
-from diagnosis.detect.by_log import Part, part_of_finite, parts
-from diagnosis.detect.input_steps import Kind, likely_steps
-from diagnosis.detect.input_tries import promises
+from diagnosis.detect.by_log import Part, parts
+from diagnosis.detect.full_size import tried
 from diagnosis.detect.instants import instants
 from diagnosis.detect.linearisation import Linearisation, Scores
+from diagnosis.detect.starts import ScoreTest, each_best, shape_starts
 from diagnosis.detect.waves import wave_starts
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import flat_slopes, likelihood, size_scale, stacked
+from diagnosis.fit.gauss_newton import flat_slopes, size_scale, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
-from diagnosis.library.coarse_grid import coarse_step
 from diagnosis.library.effect_library import EffectLibrary
 from jobs.thread_map import thread_map
 from sim.effect import Effect, EffectParameter, Role, Values
 
 Array = NDArray[np.float64]
-# Where the search of a limit begins: the level below which the command stays for these shares of the time, as a peak may be a kick of a
-# moment, and beyond its peak by these factors, where only a rounded corner is reached.
-LEVEL_SHARES, PEAK_SHARES = (0.5, 0.75, 0.9, 0.97, 0.99, 0.995, 0.998, 0.9995), (1.05, 1.2)
 SMALL_SIZE = 0.05
-MOST_STARTS = 8  # of an effect's shapes that are scored: time
 FARTHEST_SIZE = 30.0  # references: no larger size is proposed
-
-
-@dataclass(frozen=True)
-class Start:
-    """Values from where a fit may begin, and the logs, by number, that deny the effect."""
-
-    values: Values
-    denied: frozenset[int] = frozenset()
-
-
-@dataclass(frozen=True, eq=False)
-class ScoreTest:
-    """An effect with values to start a fit from: `z` its efficient score in standard deviations, `gain` of the log likelihood to first
-    order, `absorbed` the share of its signature that the plant's coefficients imitate, `power` the score that its reference size
-    would have. `denied` are the numbers of logs that show nothing of it where others do, `others` further starts that promise nearly
-    as much, from which a fit may end on another hill."""
-
-    effect: str
-    values: Values
-    z: float
-    gain: float
-    absorbed: float
-    power: float
-    denied: frozenset[int] = frozenset()
-    others: tuple[Start, ...] = ()
-
-    @property
-    def starts(self) -> tuple[Start, ...]:
-        """All from where its fit may begin, the most promising first."""
-        return (Start(self.values, self.denied), *self.others)
 
 
 def score_effects(
@@ -78,7 +42,7 @@ def score_effects(
     others = [name for name in wanted if name in library.wide_names]
     finite = [name for name in costly if not library.effects[name].on_equations or library.effects[name].is_limit]
     kinds, chosen = (
-        (_finite, _smooth, _smooth, _first_order),
+        (tried, _smooth, _smooth, _first_order),
         (finite + holding(library, wanted), others, stateless, costly),
     )
     found = thread_map(lambda kind, names: kind(case, linearisation, names), kinds, chosen)
@@ -87,13 +51,6 @@ def score_effects(
         if entry.effect not in best or entry.gain > best[entry.effect].gain:
             best[entry.effect] = entry
     return sorted(best.values(), key=lambda entry: -entry.gain)
-
-
-def shape_starts(effect: Effect) -> list[dict[str, float]]:
-    """Values of an effect's shapes to start from, its sizes left out."""
-    shapes = [parameter for parameter in effect.parameters if not parameter.is_size]
-    choices = [p.starts or (p.reference,) for p in shapes]
-    return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][:MOST_STARTS]
 
 
 def _starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
@@ -120,24 +77,7 @@ def _smooth(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
         runs = passes(case, hypothesis.with_effects({**touched, **hypothesis.effects}), places, slopes=True)
         if runs is not None:
             found += _judged(case, linearisation, touched, runs)
-    return _each_best(found)
-
-
-def _each_best(found: Iterable[ScoreTest]) -> list[ScoreTest]:
-    """Of each effect the best, with further starts."""
-    by_effect: dict[str, list[ScoreTest]] = {}
-    for entry in found:
-        by_effect.setdefault(entry.effect, []).append(entry)
-    return [_best(entries) for entries in by_effect.values()]
-
-
-def _best(found: Iterable[ScoreTest]) -> ScoreTest:
-    """The best of one effect's, with the others that promise enough: by first order nobody knows which shape's hill is the highest."""
-    best, *others = sorted(found, key=lambda entry: -entry.gain)
-    least = max(decisions.PROMISED_SHARE * best.gain, float(decisions.TAKEN_IN))
-    return replace(
-        best, others=tuple(Start(o.values, o.denied) for o in others[: decisions.NEXT - 1] if o.gain > least)
-    )
+    return each_best(found)
 
 
 def _is_sought(effect: Effect) -> bool:
@@ -226,113 +166,3 @@ def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str])
             own = _score_tests(case, {name: small}, linearisation.scores_of(column), np.array([unit]))
             found += [*own, *(_in_some_logs(case, linearisation, own, column) if own else [])]
     return found
-
-
-def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
-    """Effects on the way of the signals, and limits: tried at each of their starts at full size. Steps keep several, as each has a hill of
-    its own."""
-    effects = [case.library.effects[name] for name in names]
-    begun = thread_map(lambda effect: _ways(case, linearisation, effect), effects)
-    ways = [(effect, way) for effect, found in zip(effects, begun, strict=True) for way in found]
-    tried, ways = _first_told(linearisation, ways)
-    tried += chain.from_iterable(thread_map(lambda way: along(case, linearisation, *way), ways))
-    steps = {effect.name for effect in effects if effect.size.role is Role.STEP}
-    return [entry for entry in tried if entry.effect not in steps] + _each_best(
-        entry for entry in tried if entry.effect in steps
-    )
-
-
-def _first_told(
-    linearisation: Linearisation, ways: Sequence[tuple[Effect, list[Values]]]
-) -> tuple[list[ScoreTest], list[tuple[Effect, list[Values]]]]:
-    """Tries on the ways of inputs that are not worth a pass, as first order tells them, and what is left to try."""
-    each = [(effect, values) for effect, way in ways for values in way]
-    told, found, left = iter(promises(linearisation, each)), list[ScoreTest](), list[tuple[Effect, list[Values]]]()
-    for effect, way in ways:
-        kept = list[Values]()
-        for values in way:
-            promise = next(told)
-            if promise is None or promise.is_worth:
-                kept.append(values)
-            elif promise.power > 0.0:
-                z = float(np.sqrt(2.0 * max(promise.gain, 0.0)))
-                found.append(ScoreTest(effect.name, values, z, promise.gain, promise.absorbed, promise.power))
-        left += [(effect, kept)] if kept else []
-    return found, left
-
-
-def along(case: Case, linearisation: Linearisation, effect: Effect, way: Sequence[Values]) -> list[ScoreTest]:
-    """The tries from the mildest on, down to one that loses: to first order the log likelihood is concave in a size, and beyond that all
-    lose more. Play and limits have no first order: what is as small as noise, or cuts noise alone, loses where what holds back a
-    manoeuvre gains."""
-    found = list[ScoreTest]()
-    for values in way:
-        entry = _tried(case, linearisation, effect, values)
-        if entry is None:
-            continue
-        found.append(entry)
-        if effect.smooth and entry.gain < -decisions.chance_nats():
-            break
-    return found
-
-
-def _ways(case: Case, linearisation: Linearisation, effect: Effect) -> list[list[Values]]:
-    """Values to try of an effect without first order, for each of its shapes those of its size, mildest first; one by one where its
-    likelihood is rough. Sizes of a level, and steps with what they are like, are seen in the log."""
-    if effect.size.role is Role.STEP:
-        return [[values] for values in _steps(case, linearisation, effect)]
-    levels = _levels(case, effect) if effect.size.role is Role.LEVEL else list(effect.size.starts)
-    levels = sorted(levels or [effect.size.reference], key=lambda value: abs(value - (effect.size.zero or 0.0)))
-    ways: list[list[Values]] = [
-        [{**effect.absent, **shapes, effect.size.symbol: value} for value in levels] for shapes in shape_starts(effect)
-    ]
-    return [[values] for way in ways for values in way] if effect.holds_at_rest else ways
-
-
-def _levels(case: Case, effect: Effect) -> list[float]:
-    """What an input's command stays below for shares of the time, and a little more than its largest."""
-    model = case.library.bound.model
-    column = model.inputs.index(model.places.inputs[effect.place].variable)
-    sent = np.abs(np.concatenate([flight.filter_input.u[:, column] for flight in case.flights]))
-    levels = [*np.quantile(sent, LEVEL_SHARES), *np.multiply(PEAK_SHARES, np.max(sent))]
-    return [float(level) for level in dict.fromkeys(levels) if level > 0.0]
-
-
-def _steps(case: Case, linearisation: Linearisation, effect: Effect) -> list[Values]:
-    """The steps of a sensor, read off its readings, or those of an input, seen in the motion."""
-    library = case.library
-    sensor = library.bound.model.places.sensors.get(effect.place)
-    if sensor is None:
-        return _input_steps(linearisation, effect)
-    place = library.outputs.index(sensor.output)
-    read = np.concatenate([flight.filter_input.read[:, place] for flight in case.flights])
-    step = coarse_step(read, library.bound.plant.sensors[sensor.output])
-    return [] if step is None else [{effect.size.symbol: step}]
-
-
-def _input_steps(linearisation: Linearisation, effect: Effect) -> list[Values]:
-    """The likeliest steps of an input, each with how it is held and where it lies."""
-    hold, shift = effect.symbol(Role.HOLD), effect.symbol(Role.SHIFT)
-    kinds = [Kind(shapes[hold], shapes[shift]) for shapes in shape_starts(effect)]
-    return [
-        {effect.size.symbol: step, hold: kind.hold, shift: kind.shift}
-        for step, kind in likely_steps(linearisation, effect.place, kinds)
-    ]
-
-
-def _tried(case: Case, linearisation: Linearisation, effect: Effect, values: Values) -> ScoreTest | None:
-    """An effect at full size: its gain of the log likelihood, with what the fitted numbers would then add to first order."""
-    hypothesis = linearisation.fit.hypothesis
-    runs = passes(case, hypothesis.with_effects({**hypothesis.effects, effect.name: values}))
-    if runs is None:
-        return None
-    change = stacked(runs) - linearisation.w
-    size = float(change @ change)
-    if size < 1e-6:
-        return None
-    further, absorbed = linearisation.further(change)
-    gain = likelihood(runs) - linearisation.fit.log_likelihood + further
-    power = float(np.sqrt(max(size * (1.0 - absorbed), 0.0)))
-    part = None if effect.is_event else part_of_finite(case, linearisation.runs, runs, gain)
-    gain, denied = (gain, frozenset[int]()) if part is None else (part.gain, part.denied)
-    return ScoreTest(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power, denied)

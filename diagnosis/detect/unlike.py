@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from diagnosis.detect.by_log import with_start
 from diagnosis.detect.forward import LEFT, forward, without
 from diagnosis.detect.linearisation import Linearisation, Scores
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.fit.gauss_newton import stacked
 from diagnosis.hypothesis.hypothesis import passes
 from jobs.thread_map import thread_map

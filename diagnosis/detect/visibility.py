@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.hypothesis.case import Case
 from sim.effect import Role
 

@@ -9,7 +9,8 @@ from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.detect.instants import happened
 from diagnosis.detect.linearisation import Linearisation, linearised
-from diagnosis.detect.score_tests import ScoreTest, score_effects
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.detect.unlike import unlike
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
 from diagnosis.fit.gauss_newton import Fit, fit

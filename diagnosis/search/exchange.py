@@ -8,7 +8,8 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import score_effects, shape_starts
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.starts import shape_starts
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
 from diagnosis.fit.process_noise import with_process_noise

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.detect.by_log import with_start
-from diagnosis.detect.score_tests import ScoreTest, holding
+from diagnosis.detect.score_tests import holding
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero

@@ -12,7 +12,7 @@ from diagnosis.baselines.residual_size import by_residual_size
 from diagnosis.confirmation import of_consequence
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.detection import detect
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.diagnose import _gap
 from diagnosis.experiment.revealing import revealing_experiment
 from diagnosis.explain.improved import improved_plant

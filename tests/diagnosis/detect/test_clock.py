@@ -7,7 +7,8 @@ import pytest
 
 from diagnosis.detect.form_scores import FormScores, form_scores
 from diagnosis.detect.linearisation import Linearisation, linearised
-from diagnosis.detect.score_tests import ScoreTest, score_effects
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.evidence import as_fitted
 from diagnosis.fit.gauss_newton import fit

@@ -7,7 +7,7 @@ import pytest
 from diagnosis import decisions
 from diagnosis.detect.detection import Detection, detect
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.starts import ScoreTest
 from records.log import RunLog
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit

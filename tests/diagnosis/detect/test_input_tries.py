@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from diagnosis.detect.full_size import along
 from diagnosis.detect.input_tries import Promise, promises
 from diagnosis.detect.linearisation import Linearisation, linearised
-from diagnosis.detect.score_tests import along
 from records.log import RunLog
 from sim.added_effects import library
 from sim.effect import Effect, Values

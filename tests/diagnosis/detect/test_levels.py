@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
+from diagnosis.detect.full_size import along
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import along, score_effects
+from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.nominal import plain_fit
 from sim.added_effects import library

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diagnosis.detect.linearisation import Linearisation, linearised
-from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.detect.unlike import unlike
 from tests.diagnosis.arm import arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit

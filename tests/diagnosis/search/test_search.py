@@ -9,7 +9,8 @@ import pytest
 from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.linearisation import linearised
-from diagnosis.detect.score_tests import ScoreTest, score_effects
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.detect.starts import ScoreTest
 from diagnosis.explain.places import place_shares
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
