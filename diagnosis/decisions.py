@@ -213,7 +213,8 @@ NEXT = Count(
 PROMISED_SHARE = Limit(
     0.2,
     "share of what is needed",
-    "that a first fit, a curve, axes which yield, or a log's columns in other rows must promise to be fitted to the end: time",
+    "that a first fit, a curve, axes which yield, or a log's columns in other rows must promise to be fitted to the end, and what acts on "
+    "an input's way to be tried: time",
     "eleven moves and eight axes in spent sealed cases and own flights: fits gained 2.8 times what was promised at most",
 )
 ASTRAY = Limit(

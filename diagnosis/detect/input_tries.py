@@ -1,7 +1,7 @@
 """Effects on the way of an input at full size, all at once, to first order: what they change of commands, answered by the filter's gains.
 
-What an effect that is there changes in the innovations is what these lack: its score is its squared norm. One whose score is a small part
-of that, or whose best multiple gains no more than chance, is not worth a pass of its own.
+What an effect that is there changes in the innovations is what these lack: its score is its squared norm, and of one twice as large half of
+that. One whose score is less than PROMISED_SHARE of it, or whose best multiple gains no more than chance, is not worth a pass.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,6 @@ from sim.effect import Effect, Role, Values
 
 Array = NDArray[np.float64]
 Way = tuple[Effect, Values]
-LEAST_PART = 0.25  # of its squared norm: of an effect twice as large as the true one a half is there, and passes are linear to some tenths
 
 
 @dataclass(frozen=True)
@@ -101,4 +100,4 @@ def _promised(linearisation: Linearisation, column: int, changes: Sequence[Seque
 
 def _is_worth(score: Array, norm: Array) -> NDArray[np.bool_]:
     gained = 0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12)
-    return np.asarray((score >= LEAST_PART * norm) & (gained >= decisions.chance_nats()))
+    return np.asarray((score >= decisions.PROMISED_SHARE * norm) & (gained >= decisions.chance_nats()))
