@@ -1,6 +1,7 @@
 """PX4's logs (.ulg), by way of the optional package pyulog."""
 
 import io
+import struct
 from collections import Counter
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -14,6 +15,10 @@ from recordings.signals import Contents, Signal, counted
 from records.errors import BadInput
 
 _US = 1e-6
+_HEADER, _BEGINS = (
+    struct.Struct("<HB"),
+    16,
+)  # of a message: how many bytes follow, and its kind; where the first one begins
 
 
 def read(path: Path, asked: TextLayout) -> Contents:
@@ -41,12 +46,25 @@ def read(path: Path, asked: TextLayout) -> Contents:
             if field != "timestamp" and np.asarray(values).dtype.kind in "biuf":
                 signals[f"{name}.{field}"] = Signal(np.asarray(values, dtype=float), clock=clock)
         signals[clock] = Signal(np.asarray(topic.data["timestamp"], dtype=float) * _US, "s")
-    return Contents(signals, found=_told(log))
+    return Contents(signals, found=_told(log, _ends_within(path)))
 
 
-def _told(log: Any) -> tuple[str, ...]:
+def _ends_within(path: Path) -> bool:
+    """Whether the file ends within a message, as where the power went or a download stopped: the package passes over that."""
+    with path.open("rb") as stream:
+        whole, at = stream.seek(0, io.SEEK_END), _BEGINS
+        while at + _HEADER.size <= whole:
+            stream.seek(at)
+            size, _ = _HEADER.unpack(stream.read(_HEADER.size))
+            at += _HEADER.size + size
+    return at != whole
+
+
+def _told(log: Any, is_cut: bool) -> tuple[str, ...]:
     dropouts = list(log.dropouts)
     lost_s = sum(dropout.duration for dropout in dropouts) * 1e-3
     damaged = ["the file is damaged: what could not be read is passed over"] if log.file_corruption else []
+    if is_cut and not damaged:
+        damaged = ["the file ends early, within a message: what came before is read"]
     lost = [f"the logger lost {lost_s:g} s in {counted(len(dropouts), 'drop-outs')}"] if dropouts else []
     return (*damaged, *lost)

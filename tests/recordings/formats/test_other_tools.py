@@ -215,6 +215,20 @@ def test_a_log_of_px4_with_a_hole_in_it_is_said_to_be_damaged(damaged: bool, tmp
     assert ("the file is damaged: what could not be read is passed over" in told) is damaged
 
 
+@pytest.mark.parametrize("missing", [0, 1, 9])
+def test_a_log_of_px4_that_ends_within_a_message_gives_what_it_has(missing: int, tmp_path: Path) -> None:
+    # Truth: the last message has five bytes; without nine the one before it, the last reading of q_m, is cut too.
+    pytest.importorskip("pyulog")
+    _ulog(tmp_path / "run.ulg")
+    whole = (tmp_path / "run.ulg").read_bytes()
+    (tmp_path / "run.ulg").write_bytes(whole[: len(whole) - missing])
+    mapping = ColumnMapping(columns={"u_V": "drive.control[0]", "q_m": "encoder[1].x"}, plant="emps")
+    done = imported_here(tmp_path / "run.ulg", mapping, Span(from_s=0.0))
+    _is_the_run(done.log, slice(0, len(done.log.t_s)))
+    assert len(done.log.t_s) == N - (missing == 9)
+    assert any("ends early" in told for told in done.found) is (missing > 0)
+
+
 def test_a_topic_in_two_instances_is_asked_for(tmp_path: Path) -> None:
     _ulog(tmp_path / "run.ulg")
     with pytest.raises(BadInput, match=r"encoder\[0\]\.x .* or encoder\[1\]\.x"):
