@@ -81,12 +81,14 @@ def tally(title: str, count: int) -> Iterator[Callable[[bool, bool], None]]:
 class Countdown:
     """How far a long piece of work is and how long the rest may take, written over one line of a terminal; nothing in a pipe.
 
-    The work comes in `rounds`, each counted from 1 on; one may end early, and each is taken to last as long as those before it.
+    The work comes in `rounds`, each counted from 1 on; one may end early, and each is taken to last as long as those before it. How long
+    the rest takes is told from the second call on: before the first there is much that is done once, as compiling.
     """
 
     def __init__(self, thing: str, rounds: int = 1) -> None:
-        self._thing, self._rounds, self._began_s = thing, rounds, time.monotonic()
+        self._thing, self._rounds = thing, rounds
         self._round, self._last = 1, 0
+        self._first: tuple[float, float] | None = None  # when that was, and the share that was done
 
     def __call__(self, done: int, of: int) -> None:
         """So many are done of so many of the round at hand; what does not go on from the last call begins another."""
@@ -96,12 +98,20 @@ class Countdown:
         if not sys.stderr.isatty():
             return
         share = min((self._round - 1 + done / of) / self._rounds, 1.0)
-        left_s = (time.monotonic() - self._began_s) / share * (1.0 - share)
         which = f", {self._round} of {self._rounds}" if self._rounds > 1 else ""
-        sys.stderr.write(f"\r{f'  {self._thing} {done} of {of}{which}, {_duration(left_s)} to go':<{WIDTH}}")
+        sys.stderr.write(f"\r{f'  {self._thing} {done} of {of}{which}{self._to_go(share)}':<{WIDTH}}")
         if done == of:
             sys.stderr.write(f"\r{'':<{WIDTH}}\r")
         sys.stderr.flush()
+
+    def _to_go(self, share: float) -> str:
+        now_s = time.monotonic()
+        if self._first is None:
+            self._first = now_s, share
+        began_s, begun = self._first
+        if share <= begun:
+            return ""
+        return f", {_duration((now_s - began_s) / (share - begun) * (1.0 - share))} to go"
 
 
 def _duration(seconds: float) -> str:

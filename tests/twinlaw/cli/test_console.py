@@ -68,7 +68,9 @@ def test_a_countdown_knows_in_which_round_it_is(monkeypatch: pytest.MonkeyPatch)
     for done in (1, 2, 3, 4, 1, 2, 1, 2, 3, 4):
         tell(done, 4)
     shown = [line.strip() for line in sys.stderr.getvalue().split("\r") if line.strip()]  # type: ignore[attr-defined]
-    assert [line.rpartition(", ")[0] for line in shown] == [
+    assert shown[0] == "search: generation 1 of 4, 1 of 3"  # nothing to tell from yet
+    assert all(line.endswith(" to go") for line in shown[1:])
+    assert [shown[0], *(line.rpartition(", ")[0] for line in shown[1:])] == [
         f"search: generation {done} of 4, {which} of 3"
         for which, last in ((1, 4), (2, 2), (3, 4))
         for done in range(1, last + 1)
