@@ -55,7 +55,8 @@ class FilterInput:
     plant, `known` the sum of those that an effect makes meaningless. `lost` (m,) is the log of how much likelier each instant's
     command was lost than not, 0 where nothing is known, and `loss_power` (m,) the squared answer of the whitened innovations to its loss;
     `untold_s` (m,) for how long until the next instant nobody knows what was
-    commanded, as the log lacks rows there. `added` is what acts beside the equations, None for nothing.
+    commanded, as the log lacks rows there. `added` is what acts beside the equations, None for nothing. `anew` (m,) is the row of the
+    starts from which all begins anew at an instant, or -1; None where a log has one start.
     """
 
     t_s: Array
@@ -74,6 +75,7 @@ class FilterInput:
     untold_s: Array
     known: float = 0.0
     added: Added | None = None
+    anew: NDArray[np.int64] | None = None
 
 
 def filter_input_of(

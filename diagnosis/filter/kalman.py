@@ -123,10 +123,9 @@ class Filter:
         *,
         locked: Sequence[str] = (),
         wanted: Wanted = INNOVATIONS,
-        anew: NDArray[np.int64] | None = None,
     ) -> Pass | None:
-        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none. Where it is to begin `anew` again and
-        again, that has for each instant the row of x0 (rows, states) from which it does, or -1.
+        """Filter one log's input from x0 (states,), or (starts, states) where it begins anew; `slots` (outputs,) where each output's
+        innovations go, -1 for none.
 
         None where the state left all bounds or rattles without end: the parameters do not fit at all. What began anew so ends there.
         """
@@ -142,7 +141,7 @@ class Filter:
                 "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
                 "column": np.array(columns, dtype=np.int32),
                 "slot": np.array(slots, dtype=np.int32),
-                "anew": anew,
+                "anew": filter_input.anew,
             }
         )
         found = self._found(filter_input, width, wanted)

@@ -61,8 +61,8 @@ def predictions(
     stretches = [stretch for stretch in stretches if stretch.begin >= 0]
     slots = [place if place < outputs else -1 for place in range(len(library.outputs))]
 
-    def free(part: FilterInput, begins: NDArray[np.int64], anew: NDArray[np.int64]) -> Pass | None:
-        return chosen.run(part, given, run.filtered[begins], _sure(noise), slots, locked=flight.locked, anew=anew)
+    def free(part: FilterInput, begins: NDArray[np.int64]) -> Pass | None:
+        return chosen.run(part, given, run.filtered[begins], _sure(noise), slots, locked=flight.locked)
 
     for stretch, y in zip(stretches, _left_alone(unforeseen_input, stretches, outputs, free), strict=True):
         if not np.isfinite(y).all():
@@ -92,7 +92,7 @@ def _left_alone(
     filter_input: FilterInput,
     stretches: Sequence[_Stretch],
     outputs: int,
-    free: Callable[[FilterInput, NDArray[np.int64], NDArray[np.int64]], Pass | None],
+    free: Callable[[FilterInput, NDArray[np.int64]], Pass | None],
 ) -> list[Array]:
     """What is read over each stretch (instants, outputs) by one run, `free`, that begins anew at each; NaN from where it is lost."""
     if not stretches:
@@ -101,7 +101,7 @@ def _left_alone(
     firsts = np.cumsum([0, *(stretch.end - stretch.begin for stretch in stretches[:-1])])
     anew = np.full(len(instants), -1)
     anew[firsts] = np.arange(len(stretches))
-    run = free(_unseen(filter_input, instants, outputs), instants[firsts], anew)
+    run = free(replace(_unseen(filter_input, instants, outputs), anew=anew), instants[firsts])
     assert run is not None  # what begins anew fails by stretches
     return np.split(-run.w * np.sqrt(run.s), firsts[1:])
 

@@ -187,7 +187,7 @@ def test_what_begins_anew_is_as_runs_of_their_own() -> None:
         return replace(whole, **arrays, row=np.arange(len(rows)), place=place, rows=len(rows))
 
     def run(chosen: list[slice], x0: np.ndarray, anew: np.ndarray | None) -> Pass:
-        found = compiled.filter.run(part(chosen), p, x0, noise, arm.case.slots, anew=anew)
+        found = compiled.filter.run(replace(part(chosen), anew=anew), p, x0, noise, arm.case.slots)
         assert found is not None
         return found
 
