@@ -65,8 +65,8 @@ static bool is_lost(const filter_state *at, int64_t count)
     return lost;
 }
 
-/* A stretch from `first` up to where the next begins; returns how many instants of all are done then, fewer where the state was lost. */
-static int64_t run_from(filter_state *at, filter_request *request, int64_t first, bool *lost)
+/* A stretch from `first` up to where the next begins, or to where the state is lost; returns the instant behind its last. */
+static int64_t run_from(filter_state *at, filter_request *request, int64_t first)
 {
     start(at, request, request->x0 + (request->anew ? request->anew[first] * N : 0));
     for (int64_t step = first;; step++) {
@@ -78,26 +78,24 @@ static int64_t run_from(filter_state *at, filter_request *request, int64_t first
         const bool last = step + 1 == request->steps || begins(request, step + 1);
         if (!last)
             advance_to_next(at, step);
-        *lost = is_lost(at, step - first);
-        if (last || *lost)
-            return *lost ? step : step + 1;
+        if (last || is_lost(at, step - first))
+            return step + 1;
     }
 }
 
-/* Returns the number of instants done, fewer than asked where the state was lost and nothing begins anew. */
+/* Returns the number of instants done; fewer than asked where the state was lost and nothing begins anew. */
 int32_t filter_run(filter_request *request)
 {
     static _Thread_local filter_state at;
     if (request->columns > MAX_COLUMNS)
         return -1;
     request->log_likelihood = 0.0;
-    for (int64_t step = 0; step < request->steps;) {
-        bool lost = false;
-        step = run_from(&at, request, step, &lost);
-        if (lost && !request->anew)
-            return (int32_t)step;
-        for (step += lost; step < request->steps && !begins(request, step);)
-            step++;
+    for (int64_t first = 0, next; first < request->steps; first = next) {
+        next = run_from(&at, request, first);
+        if (is_lost(&at, next - 1 - first) && !request->anew)
+            return (int32_t)(next - 1);
+        while (next < request->steps && !begins(request, next))
+            next++;
     }
     finish_slopes(&at.slopes, request);
     finish_noise_slopes(&at.noises, request);
