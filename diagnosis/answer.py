@@ -10,7 +10,6 @@ from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.unknown import Suspect, suspects
 from diagnosis.decide.weighing import Weighed, alike, learned
 from diagnosis.detect.form_scores import FormScores
-from diagnosis.detect.visibility import cannot_tell
 from diagnosis.experiment.next_experiment import next_experiment
 from diagnosis.experiment.revealing import revealing_experiment
 from diagnosis.explain.curve import shape_of
@@ -21,6 +20,7 @@ from diagnosis.explain.notes import notes_of
 from diagnosis.explain.places import place_shares
 from diagnosis.explain.sentences import sentences
 from diagnosis.explain.sparse import suggestion
+from diagnosis.explain.visibility import cannot_tell
 from diagnosis.explain.whole_rows import whole_rows
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import tempered

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed, alike
 from diagnosis.detect.starts import ScoreTest
-from diagnosis.detect.visibility import cannot_tell, hidden, judged
+from diagnosis.explain.visibility import cannot_tell, hidden, judged
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import size_scale
 from diagnosis.fit.moved import moved_effects, moved_parameters

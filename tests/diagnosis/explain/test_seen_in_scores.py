@@ -9,7 +9,7 @@ from diagnosis.detect.input_steps import Kind, likely_steps
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.detect.starts import ScoreTest
-from diagnosis.detect.visibility import cannot_tell, hidden, judged
+from diagnosis.explain.visibility import cannot_tell, hidden, judged
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.nominal import best_plain_fit
 from diagnosis.hypothesis.case import make_case
