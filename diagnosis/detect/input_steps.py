@@ -25,6 +25,7 @@ STEPS_APART = 1.004
 # Where steps are looked for: from a share of what commands take of an input's range to a share of the whole range.
 SMALLEST_STEP, LARGEST_STEP = 0.004, 0.25
 MOMENTS = 50  # of a log, of which slopes are taken
+ONE_WAY_SHARE = 0.5  # of an input's slopes that is left of their mean where three quarters push one way
 MOST_GAINS = 40  # by what they say for the size of their errors; of these what they gain is asked
 DECLARATIONS = """
 void step_sums(int64_t rows, const double *u, const double *pull, const double *square, int64_t steps, const double *q, const double *hold,
@@ -163,22 +164,36 @@ def push_of(linearisation: Linearisation, column: int) -> Array:
 
     A and B the slopes of the rates as fitted, means along the flights; it shows in each state that it drives, at once or through others.
     """
+    own = len(linearisation.case.library.states)
+    A, B = _slopes_along(linearisation, column)
+    h_s = float(np.median(np.concatenate([np.diff(filter_input.t_s) for filter_input in linearisation.filter_inputs])))
+    both = np.zeros((own + 1, own + 1))
+    both[:own, :own], both[:own, own] = A, B.mean(axis=0)
+    return np.asarray(expm(both * h_s)[:own, own] / h_s) if np.isfinite(both).all() else np.full(own, np.nan)
+
+
+def turns(linearisation: Linearisation, column: int) -> bool:
+    """Whether an input pushes some state now one way, now the other, as its square does: of that a mean push tells nothing."""
+    _, B = _slopes_along(linearisation, column)
+    return bool((np.abs(B.mean(axis=0)) < ONE_WAY_SHARE * np.abs(B).mean(axis=0)).any())
+
+
+def _slopes_along(linearisation: Linearisation, column: int) -> tuple[Array, Array]:
+    """The slopes of the rates as fitted along the flights: their mean A by the states (states, states), and B (moments, states) by an
+    input."""
     case = linearisation.case
     model, own = case.library.bound.model, len(case.library.states)
-    A, B = np.zeros((own, own)), np.zeros(own)
     p = coefficients(case, case.library.plain, linearisation.fit.hypothesis.with_effects({}))[: case.library.own]
     slopes, signs = reference(model), np.zeros(len(model.axes))
     along = [
         moment for log in zip(linearisation.filter_inputs, linearisation.runs, strict=True) for moment in _moments(*log)
     ]
+    A, B = np.zeros((own, own)), np.zeros((len(along), own))
     with np.errstate(all="ignore"):
-        for x, u in along:
+        for row, (x, u) in enumerate(along):
             A += slopes.A(0.0, x[:own], u, p, signs) / len(along)
-            B += slopes.B(0.0, x[:own], u, p, signs)[:, column] / len(along)
-    h_s = float(np.median(np.concatenate([np.diff(filter_input.t_s) for filter_input in linearisation.filter_inputs])))
-    both = np.zeros((own + 1, own + 1))
-    both[:own, :own], both[:own, own] = A, B
-    return np.asarray(expm(both * h_s)[:own, own] / h_s) if np.isfinite(both).all() else np.full(own, np.nan)
+            B[row] = slopes.B(0.0, x[:own], u, p, signs)[:, column]
+    return A, B
 
 
 def _moments(filter_input: FilterInput, run: Pass) -> Iterator[tuple[Array, Array]]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.detect.input_steps import durations_s, push_of
+from diagnosis.detect.input_steps import durations_s, push_of, turns
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.hypothesis import filter_input_under
 from sim.composition.build import memoryless
@@ -79,7 +79,7 @@ def _arriving(linearisation: Linearisation, effect: Effect, values: Values) -> l
 def _promised(linearisation: Linearisation, column: int, changes: Sequence[Sequence[Array]]) -> list[Promise]:
     """What changes (instants,) of an input by flight promise each."""
     push = push_of(linearisation, column)
-    if not np.isfinite(push).all():
+    if not np.isfinite(push).all() or turns(linearisation, column):
         return [Promise(0.0, 0.0, 0.0, True)] * len(changes)
     values = []
     for flight, filter_input in enumerate(linearisation.filter_inputs):

@@ -1,18 +1,27 @@
 """Effects on an input's way to first order: what a pass would gain, which of them are worth one."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from diagnosis.detect.full_size import along
+from diagnosis.detect.input_steps import turns
 from diagnosis.detect.input_tries import Promise, promises
 from diagnosis.detect.linearisation import Linearisation, linearised
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
+from records.plant import load_plant
 from sim.added_effects import library
+from sim.bind import bind
+from sim.columns import log_columns
 from sim.effect import Effect, Values
+from sim.simulate import simulate
 from tests.diagnosis.arm import LONG_S, arm, arm_case, arm_log, plain_linearisation
 from tests.diagnosis.nominal import nominal_fit
+from tests.own_plants import PLAIN, OwnPlant
 
 
 def tries(name: str, sizes: Sequence[float]) -> list[tuple[Effect, Values]]:
@@ -86,3 +95,20 @@ def test_what_changes_commands_at_instants_of_its_own_or_none_promises_nothing()
 def test_a_level_beyond_all_commands_leaves_no_trace() -> None:
     (never,) = promised(seen_in(arm_log(seconds=LONG_S)), tries("input.saturation", (29.0,)))
     assert (never.power, never.is_worth) == (0.0, False)
+
+
+def test_where_an_input_pushes_now_one_way_now_the_other_passes_are_made(tmp_path: Path) -> None:
+    # Truth: an arm that is pushed by the square of its input, which swings about 0: in the mean a little more of it does nothing.
+    squared = OwnPlant(PLAIN.parameters, PLAIN.sensors, PLAIN.body.replace('p["K"] * u -', 'p["K"] * u**2 -'))
+    bound = bind(load_plant(squared.write(tmp_path, "square")))
+    t_s = 0.01 * np.arange(600)
+    u = 3.0 * np.sin(2.0 * t_s) + 2.0 * np.sin(5.0 * t_s)
+    run = simulate(bound, t_s, np.zeros(2), u[:, None], keep="y")
+    y = np.asarray(run.y).reshape(len(t_s), -1)
+    case = make_case(effect_library(bound), [RunLog(log_columns(bound.model), 0.01, "open", t_s, u[:, None], y)])
+    linearisation = linearised(case, nominal_fit(case))
+    effect = library(bound)["input.saturation"]
+    (promise,) = promised(linearisation, [(effect, {**effect.absent, effect.size.symbol: 3.0})])
+    assert turns(linearisation, 0)
+    assert promise.is_worth
+    assert not turns(plain_linearisation(), 0)
