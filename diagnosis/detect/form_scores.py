@@ -110,6 +110,8 @@ def products(linearisation: Linearisation, drawn: Array, parts: Iterable[Answers
 
 def _answers(linearisation: Linearisation, found: Sequence[Form], flight: int) -> Iterator[Answers]:
     """The answers of one flight to all forms, side by side."""
+    if not found:
+        return
     first = sum(run.w.size for run in linearisation.runs[:flight])
     targets = np.array([form.target for form in found])
     values = np.stack([form.values[flight] for form in found], axis=1)
