@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.detect.input_steps import durations_s, push_of, turns
-from diagnosis.detect.linearisation import Linearisation
+from diagnosis.detect.linearisation import Linearisation, gain_alone
 from diagnosis.hypothesis.hypothesis import filter_input_under
 from sim.composition.build import memoryless
 from sim.effect import Effect, Role, Values
@@ -99,5 +99,5 @@ def _promised(linearisation: Linearisation, column: int, changes: Sequence[Seque
 
 
 def _is_worth(score: Array, norm: Array) -> NDArray[np.bool_]:
-    gained = 0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12)
-    return np.asarray((score >= decisions.PROMISED_SHARE * norm) & (gained >= decisions.chance_nats()))
+    gains_enough = gain_alone(score, norm) >= decisions.chance_nats()
+    return np.asarray((score >= decisions.PROMISED_SHARE * norm) & gains_enough)

@@ -87,7 +87,7 @@ class Linearisation:
         values, alone and in its own direction only."""
         squares, beside = (sum(parts) for parts in zip(*self.beside_each(values, push), strict=True))
         norm, score = self.alone(np.asarray(squares), np.asarray(beside))
-        return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
+        return gain_alone(score, norm)
 
     def beside_each(self, values: Sequence[Disturbances], push: Array) -> list[tuple[Array, Array]]:
         """By flight the squares (k,) of those answers, and their products (k, free + 1) with the slopes and the innovations."""
@@ -209,6 +209,11 @@ class Linearisation:
         whole = end - begin
         apart = min(EVENT_GRID_S, whole / LEAST_EVENT_STEPS)
         return np.arange(begin, end, max(apart, whole / MOST_EVENT_STEPS))
+
+
+def gain_alone(score: Array, norm: Array) -> Array:
+    """Gain of the log likelihood (k,) by columns of these scores and squared norms (k,), each alone and in its own direction only."""
+    return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
 
 
 def _weighed(values: Disturbances, weights: Sequence[float]) -> Disturbances:

@@ -37,7 +37,8 @@ class NearSteps:
 
     def likelihoods(self, hypotheses: Sequence[Hypothesis]) -> list[float]:
         """By how many nats each is likelier than the one that is supposed, whose steps alone differ."""
-        steps, kinds = self._steps([hypothesis.effects[self.effect.name] for hypothesis in hypotheses])
+        own = [hypothesis.effects[self.effect.name] for hypothesis in hypotheses]
+        steps, kinds = _steps_of(self.effect, own, self.least)
         values = []
         for sent, taken, filter_input in zip(self.sent, self.taken, self.linearisation.filter_inputs, strict=True):
             further = (steps * errors_of(sent, steps, kinds) - taken[:, None]) * durations_s(filter_input)[:, None]
@@ -45,9 +46,6 @@ class NearSteps:
         each = self.linearisation.beside_each(values, self.push)
         gains = sum(-beside[:, -1] - 0.5 * squares for squares, beside in each)
         return [float(gain) for gain in np.asarray(gains)]
-
-    def _steps(self, values: Sequence[Values]) -> tuple[Array, list[Kind]]:
-        return _steps_of(self.effect, values, self.least)
 
 
 def near_steps(case: Case, hypothesis: Hypothesis, name: str) -> NearSteps | None:
