@@ -1,22 +1,13 @@
 """Which commands were lost on the line, by what the readings say right after each.
 
-A frame's loss leaves the inputs at what they were. Its answer a in the whitened innovations w is known from the filter; where the
-innovations were found with a share pi of the loss supposed already, the log of the likelihood ratio of loss to none is
-
-    L = a'(w + pi a) - a'a / 2
-
-and under a loss with probability p in every frame the log evidence of all is the sum of log(1 - p + p exp L). Where a loss stays in doubt,
-with probability q, the mean of what may have arrived is supposed, and the log likelihood counts less by a'a q (1 - q) / 2.
-
-Answers of neighbouring frames overlap, so which were lost is asked of all together (c/lost_beam.c), then of each beside the others.
+With L the log of the likelihood ratio of each frame's loss to none (loss_ratios.py eq (1)), under a loss with probability p in every frame
+the log evidence of all is the sum of log(1 - p + p exp L). Where a loss stays in doubt, with probability q, the mean of what may have
+arrived is supposed, and the log likelihood counts less by a'a q (1 - q) / 2.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache, partial
-from pathlib import Path
-from threading import Lock
-from typing import Any
+from functools import partial
 
 import numpy as np
 import sympy
@@ -30,24 +21,22 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
 from diagnosis.library.input_effects import lost_with
+from diagnosis.search.loss_ratios import FORGOTTEN_ROWS, Frames, loss_ratios
 from jobs.thread_map import thread_map
 from sim.bind import evaluated
 from sim.effect import Effect, Role
-from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
-FORGOTTEN_ROWS = 60  # rows after which the filter has forgotten a frame
-SWEEPS, FIRST_SHARE = 12, 0.1
+SWEEPS = 12
 LITTLE_GAINED = 0.005  # of what losses gain, below which another round is not worth its time
 LOSS_ROUNDS = 8  # with what was found in the hypothesis there is less process noise, and more shows
 LOSS_SHARES = np.geomspace(1e-3, 0.8, 60)
-OPENING = Lock()
 
 
 def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | None]:
-    """The case whose filter inputs say of each frame how much likelier it is lost than not, and its fit with such
-    losses, None where nothing
-    speaks for them: then what the filter inputs say keeps losses from explaining a delay. The case as it was where nothing can be said."""
+    """The case whose filter inputs say of each frame how much likelier it is lost than not, and its fit with such losses, None where
+    nothing speaks for them: then what the filter inputs say keeps losses from explaining a delay. The case as it was where nothing can be
+    said."""
     losses = case.library.losses
     if losses is None or losses.name not in case.library.candidates or not drives(case):
         return case, None
@@ -146,9 +135,10 @@ def _with_ratios(case: Case, linearisation: Linearisation, answers: Sequence[Arr
     columns = list(drives(case))
 
     def judged(flight: FilteredLog, unit: Array, w: Array) -> FilteredLog:
-        before = _prior_loss(case, flight.filter_input, linearisation.fit.hypothesis)
-        ratios, power = _ratios(flight.filter_input.u, columns, unit, w, before, _judged(flight.filter_input), sweeps)
-        return replace(flight, filter_input=replace(flight.filter_input, lost=ratios, loss_power=power))
+        given = flight.filter_input
+        before = _prior_loss(case, given, linearisation.fit.hypothesis)
+        ratios, power = loss_ratios(Frames(given.u, columns, unit, w, before, _judged(given)), sweeps)
+        return replace(flight, filter_input=replace(given, lost=ratios, loss_power=power))
 
     flights = thread_map(
         judged, case.flights, answers, np.split(linearisation.w.reshape(-1, max(case.slots) + 1), ends)
@@ -200,64 +190,3 @@ def _judged(filter_input: FilterInput) -> NDArray[np.uint8]:
     for row in np.flatnonzero(filter_input.untold_s):
         judged[row : row + 2] = 0
     return judged
-
-
-def _ratios(
-    u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, judged: NDArray[np.uint8], sweeps: int
-) -> tuple[Array, Array]:
-    """L and a'a of every frame from innovations with losses supposed `before`: each for itself, or in `sweeps` with what is supposed of
-    all others taken out, begun from none or from the likeliest losses of all frames together, whichever explains more. Frames that are
-    not `judged` count as arrived."""
-    _, lib = _library()
-    ways = (lib.loss_ratios, lib.loss_ratios_together) if sweeps else (lib.loss_ratios,)
-    found = thread_map(lambda way: _judged_by(way, u, columns, answers, w, before, judged, sweeps), ways)
-    return max(found, key=lambda entry: entry[0])[1:]
-
-
-def _judged_by(
-    way: Callable[..., float],
-    u: Array,
-    columns: Sequence[int],
-    answers: Array,
-    w: Array,
-    before: Array,
-    judged: NDArray[np.uint8],
-    sweeps: int,
-) -> tuple[float, Array, Array]:
-    """A bound of the log evidence, L and a'a by one of the ways of c/lost_frames.h."""
-    ffi, _ = _library()
-    arrays: dict[str, NDArray[Any]] = {
-        "u": np.ascontiguousarray(u),
-        "answers": np.ascontiguousarray(answers),
-        "column": np.array(columns, dtype=np.int64),
-        "judged": judged,
-        "left": w.copy(),
-        "lost": before.copy(),
-        "arrived": u.copy(),
-        "taken": np.zeros((len(u), len(columns))),
-        "found": np.zeros(len(u)),
-        "power": np.zeros(len(u)),
-    }
-    request = ffi.new("loss_request *")
-    for name, array in arrays.items():
-        setattr(request, name, ffi.cast("void *", array.ctypes.data))
-    request.rows, request.inputs, request.drives = len(u), u.shape[1], len(columns)
-    request.slots, request.apart, request.sweeps = w.shape[1], FORGOTTEN_ROWS, sweeps
-    request.fresh, request.first_share = not before.any(), FIRST_SHARE
-    return way(request), arrays["found"], arrays["power"]
-
-
-def _library() -> tuple[Any, Any]:
-    """The one interface and library of this process: of threads that open it at once each would make requests that others' refuse."""
-    with OPENING:
-        return _opened()
-
-
-@cache
-def _opened() -> tuple[Any, Any]:
-    folder = Path(__file__).parent / "c"
-    header = (folder / "lost_frames.h").read_text(encoding="utf-8")
-    declarations = "\n".join(line for line in header.splitlines() if not line.startswith("#"))
-    names = ("lost_frames.c", "lost_beam.c", "lost_frames.h", "lost_answer.h")
-    path = build_shared("lost-frames", [folder / name for name in names])
-    return load_shared(declarations, path)

@@ -13,8 +13,9 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search import lost_frames
-from diagnosis.search.lost_frames import FORGOTTEN_ROWS, SWEEPS, _ratios, likely_share, loss_evidence, with_losses
+from diagnosis.search import loss_ratios
+from diagnosis.search.loss_ratios import FORGOTTEN_ROWS, Frames
+from diagnosis.search.lost_frames import SWEEPS, likely_share, loss_evidence, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths.input_stages import uniform
@@ -27,12 +28,12 @@ Array = NDArray[np.float64]
 
 def test_threads_that_open_the_library_at_once_get_the_same() -> None:
     # Each pair that cffi makes refuses the requests of every other.
-    lost_frames._opened.cache_clear()
+    loss_ratios._opened.cache_clear()
     together = Barrier(8)
 
     def opened(_: int) -> object:
         together.wait()
-        return lost_frames._library()[0]
+        return loss_ratios._library()[0]
 
     with ThreadPoolExecutor(8) as pool:
         assert len(set(map(id, pool.map(opened, range(8))))) == 1
@@ -99,7 +100,7 @@ def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
     before = rng.uniform(0.0, 1.0, rows)
     judged = np.ones(rows, dtype=np.uint8)
     judged[[0, 40, 41]] = 0
-    found, power = _ratios(u, columns, answers, w, before, judged, 0)
+    found, power = loss_ratios.loss_ratios(Frames(u, columns, answers, w, before, judged), 0)
 
     arrived = u[:, columns].copy()
     for row in range(1, rows):
@@ -122,6 +123,12 @@ def answered(u: Array, lost: Array, answers: Array) -> tuple[Array, Array]:
     return arrived, w
 
 
+def ratios_of(u: Array, answers: Array, w: Array, sweeps: int) -> tuple[Array, Array]:
+    """L and a'a of frames of one input, none of which was supposed lost before."""
+    frames = Frames(u, [0], answers, w, np.zeros(len(u)), np.ones(len(u), dtype=np.uint8))
+    return loss_ratios.loss_ratios(frames, sweeps)
+
+
 def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
     """Losses whose answers overlap are all found where together they explain the innovations without rest."""
     rng = np.random.default_rng(6)
@@ -131,7 +138,7 @@ def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
     answers = np.zeros((rows, FORGOTTEN_ROWS, 1, 1))
     answers[:, :, 0, 0] = 10.0 * np.exp(-np.arange(FORGOTTEN_ROWS) / 5.0)
     arrived, w = answered(u, lost, answers)
-    ratios, _ = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), 10)
+    ratios, _ = ratios_of(u, answers, w, 10)
     clear = np.append(False, np.abs(arrived[:-1, 0] - u[1:, 0]) > 0.2)
     np.testing.assert_array_equal(ratios[clear] > 0.0, lost[clear] > 0.5)
 
@@ -147,7 +154,7 @@ def test_losses_side_by_side_are_told_apart() -> None:
     answers = np.zeros((rows, FORGOTTEN_ROWS, 1, 1))
     answers[:, :, 0, 0] = 5.0 * lags / 3.0 * np.exp(1.0 - lags / 3.0)
     w = rng.standard_normal((rows, 1)) + answered(u, lost.astype(float), answers)[1]
-    ratios, power = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), SWEEPS)
+    ratios, power = ratios_of(u, answers, w, SWEEPS)
     clear = power > 100.0
     wrong = (ratios > 0.0) != lost
     assert clear.mean() > 0.4
