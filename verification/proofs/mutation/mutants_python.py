@@ -37,14 +37,14 @@ _COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
 class PythonMutant:
     """One change: the module, its line and its text, what is changed to what; `index` counts the places of change in the module."""
 
-    module: str
+    place: str
     line: int
     change: str
     index: int
     source: str
 
     def __str__(self) -> str:
-        return f"{self.module}.py:{self.line}: {self.change} in {self.source}"
+        return f"{self.place}.py:{self.line}: {self.change} in {self.source}"
 
 
 def python_mutants(arithmetic: str) -> tuple[PythonMutant, ...]:
@@ -66,7 +66,7 @@ def mutated_twin(arithmetic: str, mutant: PythonMutant | None) -> Any:
     made: dict[str, types.ModuleType] = {}
     for module in modules:
         tree = _tree(module)
-        if mutant is not None and mutant.module == module:
+        if mutant is not None and mutant.place == module:
             _mutate(list(_mutable_nodes(tree))[mutant.index])
             ast.fix_missing_locations(tree)
         made[module] = _executed(module, tree, made)

@@ -5,11 +5,10 @@ Three groups, each to be noticed to 95 % at least: the generated law.c, the cont
 always. Survivors are told one by one. Mutants that do what the original does are justified in equivalents.toml and not counted.
 """
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -33,6 +32,13 @@ TWIN_STEPS = 10_000
 FIRST_STEPS = 12
 
 T = TypeVar("T")
+
+
+class Placed(Protocol):
+    """A mutant, whose text tells it: the function, table, axis or module it is in."""
+
+    @property
+    def place(self) -> str: ...
 
 
 @dataclass(frozen=True)
@@ -76,11 +82,8 @@ def c_score(subject: Subject) -> Score:
     """All mutants of law.c."""
     law = {name: text for name, text in subject.generated.items() if name.startswith("law")}
     stimuli = [stimuli_of(subject.table, subject.arithmetic, steps) for steps in C_STEPS]
-    judged = [
-        (str(mutant), noticed)
-        for mutant, noticed in judged_c(law, subject.arithmetic, stimuli, loops=subject.table.loops)
-    ]
-    return _score("C", judged, subject)
+    judged = judged_c(law, subject.arithmetic, stimuli, loops=subject.table.loops)
+    return _score("C", list(judged), subject)
 
 
 def table_score(subject: Subject) -> Score:
@@ -89,9 +92,9 @@ def table_score(subject: Subject) -> Score:
     genuine = twin(subject.table)
     truths = _truths(genuine, subject)
     known = _numbers(genuine.law)
-    others = [entry for entry in table_mutants(subject.table) if _numbers(twin(entry[1]).law) != known]
+    others = [mutant for mutant in table_mutants(subject.table) if _numbers(twin(mutant.table).law) != known]
     mutants = _sampled(others, subject)
-    judged = [(title, is_table_noticed(twin(table), truths)) for title, table in mutants]
+    judged = [(mutant, is_table_noticed(twin(mutant.table), truths)) for mutant in mutants]
     return _score("table", judged, subject)
 
 
@@ -116,7 +119,7 @@ def twin_score(subject: Subject) -> Score:
     table, arithmetic = subject.table, subject.arithmetic
     facts = twin_facts(mutated_twin(arithmetic, None)(table), table)
     mutants = _sampled(list(python_mutants(arithmetic)), subject)
-    judged = [(str(mutant), is_twin_noticed(table, arithmetic, mutant, facts, truths)) for mutant in mutants]
+    judged = [(mutant, is_twin_noticed(table, arithmetic, mutant, facts, truths)) for mutant in mutants]
     return _score("twin", judged, subject)
 
 
@@ -135,9 +138,9 @@ def _sampled(mutants: Sequence[T], subject: Subject) -> Sequence[T]:
     return [mutants[int(index)] for index in sorted(chosen)]
 
 
-def _score(group: str, judged: Sequence[tuple[str, bool]], subject: Subject) -> Score:
+def _score(group: str, judged: Sequence[tuple[Placed, bool]], subject: Subject) -> Score:
     """The score of a group, equivalent survivors left out."""
     known = load_deviations(EQUIVALENTS, subject.arithmetic, said_of(subject.table, subject.arithmetic))
-    silent = [Finding(re.split(r"[:.]", title)[0], 0, group, title) for title, noticed in judged if not noticed]
+    silent = [Finding(mutant.place, 0, group, str(mutant)) for mutant, noticed in judged if not noticed]
     survivors = tuple(finding.text for finding in judge(silent, known).unjustified)
     return Score(group, len(judged) - len(silent), survivors, len(silent) - len(survivors))

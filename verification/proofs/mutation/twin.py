@@ -20,6 +20,8 @@ from verification.proofs.mutation.mutants_python import PythonMutant, mutated_tw
 from verification.stimuli import Stimulus
 
 Facts = tuple[object, ...]
+_ANGLES = [(0, 0), (1, -1), (7, 9), (-511, 403), (1024, 1365), (2**31 - 1, -(2**31))]
+_VOLTAGES = (math.nan, 0.0, 5.0, -5.0, 0.0015625, -0.0015625, 10.0, -10.0, 1e4, -1e4)
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,16 @@ class Truth:
     behaviour: Behaviour
 
 
-_ANGLES = [(0, 0), (1, -1), (7, 9), (-511, 403), (1024, 1365), (2**31 - 1, -(2**31))]
-_VOLTAGES = (math.nan, 0.0, 5.0, -5.0, 0.0015625, -0.0015625, 10.0, -10.0, 1e4, -1e4)
+@dataclass(frozen=True)
+class TableMutant:
+    """A table with one change: the axis it is of, and what is changed."""
+
+    place: str
+    change: str
+    table: ControllerTable
+
+    def __str__(self) -> str:
+        return f"{self.place}.{self.change}"
 
 
 def is_twin_noticed(
@@ -54,11 +64,11 @@ def twin_facts(twin: Any, table: ControllerTable) -> Facts:
     return fresh, self_test(table, twin), angles, duties
 
 
-def table_mutants(table: ControllerTable) -> Iterator[tuple[str, ControllerTable]]:
+def table_mutants(table: ControllerTable) -> Iterator[TableMutant]:
     """A flipped ulp, a dropped sign and a swap with the next row, one at a time, for each coefficient; limits by an ulp."""
     for loop, axis in zip(table.loops, table.axes, strict=True):
-        for title, changed in _axis_mutants(axis):
-            yield f"{loop.axis}.{title}", changed_axis(table, loop.axis, **vars(changed))
+        for change, changed in _axis_mutants(axis):
+            yield TableMutant(loop.axis, change, changed_axis(table, loop.axis, **vars(changed)))
 
 
 def is_table_noticed(twin: BatchStepper, truths: Sequence[Truth]) -> bool:
@@ -70,14 +80,14 @@ def _axis_mutants(axis: AxisLaw) -> Iterator[tuple[str, AxisLaw]]:
     for group in ("q_V_rad", "p"):
         rows: tuple[Polynomial, ...] = getattr(axis, group)
         for index, row in enumerate(rows):
-            for title, changed in _polynomial_mutants(row):
-                yield f"{group}[{index}]{title}", _with(axis, group, (*rows[:index], changed, *rows[index + 1 :]))
+            for change, changed in _polynomial_mutants(row):
+                yield f"{group}[{index}]{change}", _with(axis, group, (*rows[:index], changed, *rows[index + 1 :]))
         for index in range(len(rows) - 1):
             if rows[index] != rows[index + 1]:
                 swapped = (*rows[:index], rows[index + 1], rows[index], *rows[index + 2 :])
                 yield f"{group}: rows {index} and {index + 1} swapped", _with(axis, group, swapped)
-    for title, changed in _polynomial_mutants(axis.feedforward_V):
-        yield f"feedforward_V{title}", _with(axis, "feedforward_V", changed)
+    for change, changed in _polynomial_mutants(axis.feedforward_V):
+        yield f"feedforward_V{change}", _with(axis, "feedforward_V", changed)
     for index, value in enumerate(axis.a):
         changed_a = (*axis.a[:index], _next(value, value), *axis.a[index + 1 :])
         yield f"a[{index}] an ulp up", _with(axis, "a", changed_a)
@@ -98,8 +108,8 @@ def _polynomial_mutants(row: Polynomial) -> Iterator[tuple[str, Polynomial]]:
     for power, value in enumerate(used):
         if np.float32(value) == 0.0:
             continue
-        for title, changed in (("an ulp up", _next(value, largest)), ("its sign dropped", -value)):
-            yield f"[{power}] {title}", (*row[:power], changed, *row[power + 1 :])
+        for change, changed in (("an ulp up", _next(value, largest)), ("its sign dropped", -value)):
+            yield f"[{power}] {change}", (*row[:power], changed, *row[power + 1 :])
 
 
 def _next(value: float, scale: float) -> float:
