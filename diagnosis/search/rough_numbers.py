@@ -19,6 +19,8 @@ VALUES_AT_ONCE = 13  # values at a time
 # Shares of a step in which a likelier one is looked for, at first and once the rest fits: some hundred steps of a range tell one to a
 # hundred-thousandth.
 POLISHING, STEP_FINELY = (0.2, 0.03, 0.005), (1e-3, 2e-4, 4e-5)
+# Shares of what lies between the first values of a shape, to both sides, in which a likelier one is looked for with steps that follow it.
+SHAPED_FINELY = (1.0, 1.0 / 6.0)
 LIKE_TOLD = 0.25  # of what first order tells that a pass may tell otherwise: passes are linear to a tenth, but where an axis sticks
 PLAINLY = 0.005  # of a step, as a share, in which its multiples are looked for where steps that lie beside theirs lie
 # Times a step, to which it follows what else changes about it: beyond, it is another.
@@ -108,10 +110,11 @@ def _reshaped(case: Case, tell: Tell, start: Hypothesis, name: str, shapes: Sequ
     for shape in shapes:
         values = np.linspace(shape.lower, shape.upper, VALUES_AT_ONCE)
         start = _likeliest_value(tell, start, name, shape.symbol, [start.effects[name][shape.symbol], *values.tolist()])
-        beside = start.effects[name][shape.symbol] + (values[1] - values[0]) * np.linspace(-1.0, 1.0, VALUES_AT_ONCE)
-        near = np.clip(beside, shape.lower, shape.upper).tolist()
-        tried = [other for value in near for other in _following(case, start, name, shape.symbol, value)]
-        start = _best(tell, start, [start, *tried])
+        for apart in (values[1] - values[0]) * np.array(SHAPED_FINELY):
+            beside = start.effects[name][shape.symbol] + apart * np.linspace(-1.0, 1.0, VALUES_AT_ONCE)
+            near = np.clip(beside, shape.lower, shape.upper).tolist()
+            tried = [other for value in near for other in _following(case, start, name, shape.symbol, value)]
+            start = _best(tell, start, [start, *tried])
     return start
 
 
