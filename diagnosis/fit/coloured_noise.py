@@ -75,6 +75,16 @@ def coloured_noise_of(case: Case, hypothesis: Hypothesis) -> Hypothesis:
     return _likeliest(case, hypothesis, chosen, white_noise(case, hypothesis))[0]
 
 
+def beyond(case: Case, before: Hypothesis, there: Hypothesis, by: float) -> Hypothesis:
+    """What lies `by` times the way from one to the other behind that, of parameters and of all noise; both have the same kinds of it."""
+    chosen = [colour for colour in colours(case) if colour.of(there) is not None]
+    found = replace(there, theta=there.theta + by * (there.theta - before.theta))
+    for number in [*white_noise(case, there), *_numbers_of(chosen)]:
+        at = number.of(there)
+        found = number.put(found, at + by * (at - number.of(before)))
+    return found
+
+
 def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, float]:
     """What is known of a gust's size and time (one standard deviation of each), by how the likelihood bends over BEND_FACTOR to all sides,
     with each known to a factor of e before."""
@@ -100,12 +110,15 @@ def _likeliest(
 ) -> tuple[Hypothesis, float]:
     """The likeliest numbers of the `chosen` and of the white noise, without those colours that are too small to tell; and the log
     likelihood."""
-    own = [number for colour in chosen for number in (size_of(colour), _time(colour))]
-    found, value = likeliest_numbers(case, hypothesis, [*white, *own])
+    found, value = likeliest_numbers(case, hypothesis, [*white, *_numbers_of(chosen)])
     kept = found
     for colour in chosen:
         kept = kept if _numbers(colour, kept)[0] > colour.least else colour.without(kept)
     return (found, value) if kept is found else (kept, likelihood_of(case, kept))
+
+
+def _numbers_of(chosen: Sequence[Colour]) -> list[Number]:
+    return [number for colour in chosen for number in (size_of(colour), _time(colour))]
 
 
 def size_of(colour: Colour) -> Number:

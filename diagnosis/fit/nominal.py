@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.fit.coloured_noise import coloured_noise_of, colours, with_colours
-from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
+from diagnosis.fit.coloured_noise import beyond, coloured_noise_of, colours, with_colours
+from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit, log_prior
 from diagnosis.fit.process_noise import with_process_noise
+from diagnosis.fit.profile_likelihood import likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, as_noisy, has_memory, nominal_hypothesis
 from jobs.thread_map import thread_map
@@ -15,6 +16,7 @@ from records.errors import BadInput
 
 NOMINAL_ROUNDS = 4
 NOISE_STARTS = tuple(float(decisions.FIRST_PROCESS_NOISE) + by for by in (-1.0, 0.0, 1.0))  # log10 rad/s per sqrt(s)
+WAYS_ON = (1.0, 4.0)  # times the way of a round that are tried behind it
 SETTLING_ROUNDS = 8  # parameters and noises give way to each other by little a round
 
 
@@ -100,10 +102,26 @@ def _under(case: Case, found: Fit, coloured: Hypothesis) -> Fit:
         again = fit(case, coloured_noise_of(case, coloured), rounds=NOMINAL_ROUNDS)
         if again is None:
             break
-        gained, found, coloured = again.log_posterior - found.log_posterior, again, again.hypothesis
+        before, gained, found = found.hypothesis, again.log_posterior - found.log_posterior, again
         if gained < LITTLE_NATS:
             break
+        coloured = _further(case, before, found)
     return found
+
+
+def _further(case: Case, before: Hypothesis, there: Fit) -> Hypothesis:
+    """What lies on along the way that a round went, where likelier: what parameters and noise do alike they do by little a round."""
+    hypothesis = there.hypothesis
+    if (before.effects.keys(), before.reading_noise.keys()) != (
+        hypothesis.effects.keys(),
+        hypothesis.reading_noise.keys(),
+    ):
+        return hypothesis
+    tried = [hypothesis, *(beyond(case, before, hypothesis, by) for by in WAYS_ON)]
+    values = [
+        value + log_prior(case, one, there.free) for one, value in zip(tried, likelihoods(case, tried), strict=True)
+    ]
+    return tried[int(np.argmax(values))]
 
 
 def fitted_from(case: Case, other: Fit) -> Fit | None:
