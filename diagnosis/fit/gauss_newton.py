@@ -24,7 +24,8 @@ LEAST_STEP_GAIN = 0.1  # gain of the log posterior below which a fit has ended
 LITTLE_NATS = (
     1.0  # gained by a round of several fits, or promised by a step, below which it is the last: a tenth of TAKEN_IN
 )
-DAMPINGS = 4
+# Of a step that is too long: tried as it is, then shorter by more and more, down to a third of it.
+DAMPINGS, FIRST_DAMPING, MORE_DAMPING = 4, 0.06, 6.0
 DIFFERENCE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, LAG_JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
 OUT_OF_REACH = 1e3  # references
@@ -195,11 +196,14 @@ def fit(case: Case, start: Hypothesis, *, rounds: int = 8, shapes: bool = True) 
             return None
         if damping == 0.0 and at.promised < LEAST_STEP_GAIN:
             return at
-        for _ in range(DAMPINGS):
-            fitted = _linear(case, _moved(case, at, damping), free, at.log_posterior)
+        for tried in range(DAMPINGS):
+            moved = _moved(case, at, damping)
+            # Most steps end at the first that is tried: its slopes come along.
+            is_asked = tried == 0 or _log_posterior(case, moved, free) > at.log_posterior
+            fitted = _linear(case, moved, free, at.log_posterior) if is_asked else None
             if fitted is not None:
                 break
-            damping = max(4.0 * damping, 0.03)
+            damping = max(MORE_DAMPING * damping, FIRST_DAMPING)
         else:
             return at
         gain, at = fitted.log_posterior - at.log_posterior, fitted
@@ -210,10 +214,11 @@ def fit(case: Case, start: Hypothesis, *, rounds: int = 8, shapes: bool = True) 
 
 
 def _moved(case: Case, at: Fit, damping: float) -> Hypothesis:
-    """One damped step, kept within the effects' bounds."""
+    """One damped step, kept within the effects' bounds. A number counts for no less than its unit in it: one of which the logs tell next to
+    nothing, as a shape of no size yet, would else go as far as ever however much all others are held back."""
     count = len(case.free)
     theta = at.hypothesis.theta
-    curvature = at.information + damping * np.diag(np.diag(at.information))
+    curvature = at.information + damping * np.diag(np.diag(at.information) + 1.0)
     step = -np.linalg.solve(curvature, at.pull)
     moved = replace(at.hypothesis, theta=theta + step[:count])
     for entry, change in zip(at.free, step[count:], strict=True):
@@ -221,6 +226,10 @@ def _moved(case: Case, at: Fit, damping: float) -> Hypothesis:
         value = float(np.clip(value, entry.parameter.lower, entry.parameter.upper))
         moved = moved.with_value(entry.effect, entry.parameter.symbol, value, entry.log)
     return moved
+
+
+def _log_posterior(case: Case, hypothesis: Hypothesis, free: Sequence[Free]) -> float:
+    return likelihood_of(case, hypothesis) + log_prior(case, hypothesis, free)
 
 
 def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: float = -np.inf) -> Fit | None:
