@@ -23,7 +23,7 @@ from diagnosis.explain.sparse import suggestion
 from diagnosis.explain.visibility import cannot_tell
 from diagnosis.explain.whole_rows import whole_rows
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import tempered
+from diagnosis.fit.linear_problem import tempered
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.result import Exit, Judged, Material, Result, Seen

@@ -14,7 +14,7 @@ from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.starts import ScoreTest
 from diagnosis.explain.curve import Shape
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.beam import Alone, Search
 from diagnosis.search.free_curve import FittedCurve

@@ -14,7 +14,8 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.detect.starts import ScoreTest
 from diagnosis.fit.between_rows import between_rows, held_beside, with_commands
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory, with_memory_from
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual

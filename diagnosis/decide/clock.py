@@ -14,7 +14,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.decide.columns import settled_or_none, with_usual_forces
 from diagnosis.decide.rows import most_by_an_effect
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import gain_over
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import settled
 from diagnosis.hypothesis.case import Case, first_rows
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis

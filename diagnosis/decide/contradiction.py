@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
 from diagnosis.fit.evidence import log_evidence
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 

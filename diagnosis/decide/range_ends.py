@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.columns import fitted_or_none
-from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library

@@ -25,7 +25,8 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.filter.filter_input import READINGS, FilterInput
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import fitted_from, gain_over
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.column_wiring import ColumnWiring, Stretch, rewired, silenced, turned_signs
-from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis, passes
 from diagnosis.validate.prediction import WINDOW_S

@@ -16,7 +16,8 @@ from diagnosis.decide.columns import (
     looked_at,
 )
 from diagnosis.decide.turned import in_words, turned_within
-from diagnosis.fit.gauss_newton import Fit, likelihood_of
+from diagnosis.fit.likelihood import likelihood_of
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import gain_over
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case

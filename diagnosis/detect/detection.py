@@ -15,7 +15,9 @@ from diagnosis.detect.instants import disturbed_by
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.replicas import Tail, replicas, tail_of
 from diagnosis.detect.starts import ScoreTest
-from diagnosis.fit.gauss_newton import Fit, away, prior_chi_squared, size_scale
+from diagnosis.fit.free_numbers import size_scale
+from diagnosis.fit.known_before import away, prior_chi_squared
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from jobs.thread_map import at_once, thread_map

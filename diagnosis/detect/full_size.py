@@ -11,7 +11,7 @@ from diagnosis.detect.input_steps import Kind, likely_steps
 from diagnosis.detect.input_tries import promises
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.starts import ScoreTest, each_best, shape_starts
-from diagnosis.fit.gauss_newton import likelihood, stacked
+from diagnosis.fit.likelihood import likelihood, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.library.coarse_grid import coarse_step

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Filter, Pass, columns_of
-from diagnosis.fit.gauss_newton import Fit, flat_slopes, likelihood, stacked
+from diagnosis.fit.likelihood import flat_slopes, likelihood, stacked
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, filter_input_under, passes
 from jobs.thread_map import thread_map

@@ -14,7 +14,8 @@ from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.starts import ScoreTest, each_best, shape_starts
 from diagnosis.detect.waves import wave_starts
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import flat_slopes, size_scale, stacked
+from diagnosis.fit.free_numbers import size_scale
+from diagnosis.fit.likelihood import flat_slopes, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.library.effect_library import EffectLibrary

@@ -9,7 +9,7 @@ from diagnosis.detect.by_log import with_start
 from diagnosis.detect.forward import LEFT, forward, without
 from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.starts import ScoreTest
-from diagnosis.fit.gauss_newton import stacked
+from diagnosis.fit.likelihood import stacked
 from diagnosis.hypothesis.hypothesis import passes
 from jobs.thread_map import thread_map
 

@@ -10,7 +10,7 @@ from diagnosis import decisions
 from diagnosis.experiment.menu import plans
 from diagnosis.experiment.next_experiment import law_of, period_of
 from diagnosis.experiment.simulated_experiment import recorded, setting, simulate_experiment
-from diagnosis.fit.gauss_newton import size_scale
+from diagnosis.fit.free_numbers import size_scale
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 

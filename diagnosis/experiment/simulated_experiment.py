@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.experiment.menu import Plan, gravity_parameters
 from diagnosis.experiment.stand_in import StandIn, steered
-from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
+from diagnosis.fit.likelihood import flat_slopes, stacked
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.validate.simulated import Flown

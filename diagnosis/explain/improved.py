@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.coloured_noise import colour_sd
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.jitter import jitter_sd
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.profile_likelihood import known_to
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, known_beginning

@@ -7,7 +7,7 @@ from diagnosis.decide.weighing import Weighed, alike
 from diagnosis.detect.starts import ScoreTest
 from diagnosis.explain.visibility import cannot_tell, hidden, judged
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import size_scale
+from diagnosis.fit.free_numbers import size_scale
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import ELSEWHERE, coefficients

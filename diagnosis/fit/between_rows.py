@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import NOMINAL_ROUNDS, gain_over, settled
 from diagnosis.hypothesis.case import Case, FilteredLog
 from records.reasons import Decision

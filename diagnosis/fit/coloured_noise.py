@@ -11,7 +11,8 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.fit.foretold import foretold_of
-from diagnosis.fit.gauss_newton import Fit, likelihood_of
+from diagnosis.fit.likelihood import likelihood_of
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import white_noise
 from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.fit.scoring import Number, likeliest_numbers

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.fit.gauss_newton import Fit, from_zero
+from diagnosis.fit.free_numbers import from_zero
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Role
 

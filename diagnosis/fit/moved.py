@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from diagnosis.fit.gauss_newton import Fit, Free, away
+from diagnosis.fit.free_numbers import Free
+from diagnosis.fit.known_before import away
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 
 

@@ -6,7 +6,9 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.fit.coloured_noise import beyond, coloured_noise_of, colours, with_colours
-from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit, log_prior
+from diagnosis.fit.gauss_newton import LITTLE_NATS, fit
+from diagnosis.fit.known_before import log_prior
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likelihoods
 from diagnosis.hypothesis.case import Case

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from jobs.thread_map import thread_map

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import LITTLE_NATS, likelihood
+from diagnosis.fit.gauss_newton import LITTLE_NATS
+from diagnosis.fit.likelihood import likelihood
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 

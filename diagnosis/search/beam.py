@@ -13,7 +13,8 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.detect.starts import ScoreTest
 from diagnosis.detect.unlike import unlike
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink

@@ -11,7 +11,8 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.detect.starts import shape_starts
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
+from diagnosis.fit.gauss_newton import LITTLE_NATS, fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case

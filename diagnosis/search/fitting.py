@@ -13,8 +13,10 @@ from diagnosis.detect.score_tests import holding
 from diagnosis.detect.starts import ScoreTest
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.gauss_newton import Fit, fit, from_zero
+from diagnosis.fit.free_numbers import from_zero
+from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.jitter import scatters, with_jitter
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, first_state_noise

@@ -22,7 +22,8 @@ from diagnosis.filter.filter_input import Added
 from diagnosis.filter.kalman import Disturbances
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import with_memory_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, has_memory

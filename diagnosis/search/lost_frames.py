@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.filter.filter_input import FilterInput
-from diagnosis.fit.gauss_newton import Fit, fit, unfitted
+from diagnosis.fit.gauss_newton import fit, unfitted
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients

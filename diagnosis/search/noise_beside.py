@@ -9,7 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
 from diagnosis.fit.foretold import foretold_of
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import as_noisy, has_memory

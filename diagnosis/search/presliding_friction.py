@@ -9,7 +9,8 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, log_evidence
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import axis_noise, with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.fit.scoring import Number, likeliest_numbers

@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
-from diagnosis.fit.gauss_newton import Fit, Free, away, fit
+from diagnosis.fit.free_numbers import Free
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.known_before import away
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case

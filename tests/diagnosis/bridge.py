@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from diagnosis import decisions
-from diagnosis.fit.gauss_newton import Fit, from_zero, likelihood_of, log_prior
+from diagnosis.fit.free_numbers import from_zero
+from diagnosis.fit.known_before import log_prior
+from diagnosis.fit.likelihood import likelihood_of
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from jobs.thread_map import thread_map
 

@@ -1,6 +1,6 @@
 """The plant alone, fitted in one call, where a diagnosis asks between its two steps whether commands move between rows."""
 
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import best_plain_fit, with_memory
 from diagnosis.hypothesis.case import Case
 

@@ -11,7 +11,7 @@ import sim.effects
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.filter.filter_input import filter_input_of
-from diagnosis.fit.gauss_newton import free_numbers
+from diagnosis.fit.free_numbers import free_numbers
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.library.sensor_effects import READ_BACK, sensed

@@ -15,7 +15,8 @@ from diagnosis.detect.form_scores import FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import Fit, Free
+from diagnosis.fit.free_numbers import Free
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Seen

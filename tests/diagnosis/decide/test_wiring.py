@@ -9,7 +9,7 @@ import pytest
 from diagnosis.decide.columns import is_refused, is_strained
 from diagnosis.decide.turned import turned_within
 from diagnosis.decide.wiring import demand_wiring, likelier_wiring
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library

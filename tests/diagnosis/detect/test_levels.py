@@ -9,7 +9,7 @@ from diagnosis import decisions
 from diagnosis.detect.full_size import along
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.nominal import plain_fit
 from sim.added_effects import library
 from tests.diagnosis.arm import LONG_S, arm, arm_case, arm_log

@@ -12,7 +12,9 @@ from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.filter.filter_input import Added, FilterInput, spread
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass, slope_of
-from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.likelihood import likelihood_of
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, noise_of, nominal_hypothesis, passes
 from diagnosis.library.effect_library import EffectLibrary, effect_library

@@ -9,7 +9,8 @@ from scipy.signal import lfilter
 from diagnosis import decisions
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.coloured_noise import coloured_noise_of, colours, size_of
-from diagnosis.fit.gauss_newton import fit, likelihood_of
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.nominal import with_memory
 from diagnosis.hypothesis.hypothesis import noise_on, nominal_hypothesis
 from diagnosis.library.reading_noise import ReadingNoise

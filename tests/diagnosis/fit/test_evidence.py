@@ -5,7 +5,8 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import log_evidence
-from diagnosis.fit.gauss_newton import Fit, Free, tempered
+from diagnosis.fit.free_numbers import Free
+from diagnosis.fit.linear_problem import Fit, tempered
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from sim.added_effects import library
 from sim.bind import BoundPlant

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.gauss_newton import fit, likelihood
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.likelihood import likelihood
 from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.library.effect_library import effect_library

@@ -4,7 +4,7 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import from_zero
+from diagnosis.fit.free_numbers import from_zero
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.gauss_newton import LITTLE_NATS, Fit, fit
+from diagnosis.fit.gauss_newton import LITTLE_NATS, fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with_memory_from
 from diagnosis.hypothesis.case import Case
 from diagnosis.screening import detected

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis

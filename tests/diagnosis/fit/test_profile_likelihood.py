@@ -1,6 +1,7 @@
 """The likelihood of some hypotheses."""
 
-from diagnosis.fit.gauss_newton import fit, likelihood_of
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.profile_likelihood import known_to, likeliest, likelihoods
 from sim.effect import Role
 from tests.diagnosis.arm import arm_case, arm_log, plain_linearisation

@@ -8,7 +8,8 @@ import pytest
 from scipy.signal import lfilter
 
 from diagnosis.decide.rows import Asked, Misplaced, moved
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
 from diagnosis.library.effect_library import effect_library

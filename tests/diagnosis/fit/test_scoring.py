@@ -8,7 +8,8 @@ import pytest
 from diagnosis.fit.coloured_noise import _time as time
 from diagnosis.fit.coloured_noise import colours as colours
 from diagnosis.fit.coloured_noise import size_of as size
-from diagnosis.fit.gauss_newton import LITTLE_NATS, likelihood_of
+from diagnosis.fit.gauss_newton import LITTLE_NATS
+from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.process_noise import LEAST_NOISE, axis_noise, white_noise
 from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.fit.scoring import _passes as passes_by

@@ -8,7 +8,7 @@ import pytest
 from diagnosis.decide.contradiction import contradiction
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.evidence import as_fitted
-from diagnosis.fit.gauss_newton import log_prior, prior_chi_squared
+from diagnosis.fit.known_before import log_prior, prior_chi_squared
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library

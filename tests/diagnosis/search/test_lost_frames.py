@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search import loss_ratios

@@ -5,7 +5,9 @@ import pytest
 
 from diagnosis.explain.improved import estimates
 from diagnosis.fit.evidence import as_fitted
-from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.likelihood import likelihood_of
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.rough_numbers import POLISHING, STEP_FINELY, is_rough, likeliest_size, polished

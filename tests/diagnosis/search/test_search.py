@@ -13,7 +13,9 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.detect.starts import ScoreTest
 from diagnosis.explain.places import place_shares
 from diagnosis.fit.evidence import FittedHypothesis, log_evidence
-from diagnosis.fit.gauss_newton import Fit, Free, fit
+from diagnosis.fit.free_numbers import Free
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library

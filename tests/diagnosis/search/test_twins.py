@@ -13,7 +13,8 @@ from diagnosis.decide.weighing import Weighed, first_share
 from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.foretold import foretold_nats
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
 from diagnosis.search.beam import Search, beam_of, with_twins
