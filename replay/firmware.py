@@ -22,8 +22,8 @@ from records.table import ControllerTable
 from records.text.units import units_of
 from replay.arithmetic import FIXED, Replayed, misread_in_fixed, replayed, replayed_in_fixed
 from replay.columns import OF_THE_COLUMNS
-from replay.events import MISREAD, UNLOGGED
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
+from replay.follower import MISREAD, UNLOGGED
 from replay.law import FLOAT32, FLOAT64
 from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
 from replay.printed import agrees_as_printed

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from design.law import polynomial
 from records.table import ControllerTable
 from replay import thresholds
-from replay.events import Workshop
 from replay.flight import ReplayedLog
 from replay.law import ReplayLaw, Setup
+from replay.workshop import Workshop
 
 Array = NDArray[np.float64]
 

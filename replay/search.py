@@ -13,8 +13,8 @@ from records.table import ControllerTable
 from replay import thresholds
 from replay.build import fused_outputs
 from replay.columns import OFFSET, constant_inputs, given_columns, output_lines
-from replay.events import (
-    GRID_SLACK,
+from replay.flight import ReplayedLog, readings
+from replay.follower import (
     MISREAD,
     OUTPUT_HELD,
     RESET,
@@ -24,15 +24,14 @@ from replay.events import (
     UNLOGGED,
     Follower,
     Trace,
-    Workshop,
 )
-from replay.flight import ReplayedLog, readings
 from replay.law import FLOAT32, ReplayLaw, Setup, channel_agrees
 from replay.lone import lone_variants
 from replay.midair import begins_in_flight
 from replay.overflow import angles_that_wrap, output_wraps, sums_that_overflow
 from replay.prefilter import fitted_prefilters
 from replay.variants import Variant, variants
+from replay.workshop import GRID_SLACK, Workshop
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from records.log import RunLog
 from replay.arithmetic import replayed, replayed_in_fixed
 from replay.columns import SCALED, TURNED, UNIT, constant_inputs, given_columns, output_lines
 from replay.digits import printing
-from replay.events import OUTPUT_HELD, Follower, Workshop
 from replay.flight import ReplayedLog, advanced, flight_of, has_replayable_columns, lagged
+from replay.follower import OUTPUT_HELD, Follower
 from replay.law import ReplayLaw, Setup
 from replay.lone import lone_variants
 from replay.midair import begins_in_flight
@@ -19,6 +19,7 @@ from replay.overflow import output_wrap
 from replay.prefilter import fitted_prefilters
 from replay.search import explain
 from replay.variants import grid_step, steps_in_words, variants
+from replay.workshop import Workshop
 from tests.law_tables import ce150_table, changed_axis
 from tests.replay.firmware_flights import Lossy, Wrapped, flown, rows_of, stale
 from verification.host_law import host_law

@@ -13,27 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replay import thresholds
-from replay.flight import (
-    ReplayedLog,
-    advanced,
-    blocks,
-    candidates_for_misread,
-    candidates_for_missing,
-    candidates_for_unmeasured,
-    lagged,
-    leaps,
-)
-from replay.law import FLOAT64, Fold, ReplayLaw, Setup, each, number_type
+from replay.flight import blocks, candidates_for_misread, candidates_for_missing, candidates_for_unmeasured, leaps
+from replay.law import ReplayLaw, Setup, each
+from replay.workshop import Workshop
 
 Array = NDArray[np.float64]
-
-DOUBLE_SLACK_V = 1e-9  # two ways to write the same law in double precision stay well within this
-LIMIT_SLACK_V = 2e-6
-GRID_SLACK = 1e-3  # of a step: a number on a grid is known by its nearest step
-
 OUTPUT_HELD, SAMPLE_LOST, RESET = "dropped_frame", "lost_sample", "reset"
 STALE_ANGLES, STALE_REFERENCES, UNLOGGED = "stale_sample_once", "stale_reference_once", "sample_not_logged"
 MISREAD = "reading_not_as_logged"
+# The state before samples that the log lacks, or an answer that it lacks, and which they are.
+_Gap = tuple[Any, tuple[int, int]]
 
 
 @dataclass(frozen=True)
@@ -66,42 +55,12 @@ class Trace:
         return sum(incident.samples for incident in self.incidents if incident.kind == kind)
 
 
-_Gap = tuple[
-    Any, tuple[int, int]
-]  # the state before samples that the log lacks, or an answer that it lacks, and which they are
-
-
 @dataclass(frozen=True)
 class _Hypothesis:
     kind: str
     first: int
     behind: int
     state: Any
-
-
-class Workshop:
-    """Makes followers of one flight; what several setups have in common is made once."""
-
-    def __init__(self, flight: ReplayedLog) -> None:
-        self.flight = flight
-        measured = ~np.isnan(flight.logged_V).any(axis=1)
-        self.lacks = np.isnan(flight.angle_rad[measured]).any(axis=0)  # angles (loops,) that answered rows do without
-        self._inputs: dict[object, NDArray[Any]] = {}
-        self._answers: dict[object, tuple[Array, Array]] = {}
-
-    def inputs(self, setup: Setup) -> NDArray[Any]:
-        """What the setup's law is given (n, 2 loops): references, angles."""
-        key = (setup.angle_lags, setup.reference_lag, setup.folds, setup.columns, setup.signs, setup.arithmetic)
-        if key not in self._inputs:
-            self._inputs[key] = _inputs(self.flight, setup).astype(number_type(setup.arithmetic))
-        return self._inputs[key]
-
-    def answers(self, setup: Setup) -> tuple[Array, Array]:
-        """What the setup's law should answer (n, loops), and how exactly that is known, alike; in V."""
-        key = (setup.arithmetic, setup.channel, setup.output_lag, setup.angle_lags)
-        if key not in self._answers:
-            self._answers[key] = _wanted(self.flight, setup)
-        return self._answers[key]
 
 
 class Follower:
@@ -338,47 +297,3 @@ class Follower:
 
     def _between(self, first: int, behind: int) -> tuple[Array, Array]:
         return self._wanted[first:behind].copy(), self._slack[first:behind].copy()
-
-
-def _inputs(flight: ReplayedLog, setup: Setup) -> Array:
-    """What the law was given (n, 2 loops): references and angles, each as late as the setup says."""
-    folds = zip(flight.angle_rad.T, flight.steps_rad, each(setup.folds, setup.loops), strict=True)
-    folded = [_folded(*column)[:, np.newaxis] for column in folds]
-    angles = [lagged(column, lag) for column, lag in zip(folded, each(setup.angle_lags, setup.loops), strict=True)]
-    references = lagged(flight.reference_rad, setup.reference_lag)
-    given = np.hstack([references, *angles])
-    given = given[:, list(setup.columns)] if setup.columns else given
-    return np.ascontiguousarray(given * np.array(setup.signs))
-
-
-def _folded(angle_rad: Array, step_rad: float, fold: Fold | None) -> Array:
-    """The angle of the whole counts that are left when their integer has wrapped round or saturated."""
-    if fold is None:
-        return angle_rad
-    if fold.saturates:
-        counts = np.round(angle_rad / step_rad)
-        low = round(fold.low_rad / step_rad)
-        return np.asarray(np.clip(counts, low, low + round(fold.span_rad / step_rad) - 1) * step_rad)
-    around = np.floor((angle_rad - fold.low_rad) / fold.span_rad)
-    return np.asarray(np.round((angle_rad - around * fold.span_rad) / step_rad) * step_rad)
-
-
-def _wanted(flight: ReplayedLog, setup: Setup) -> tuple[Array, Array]:
-    """What the law should have answered (n, loops) in V, and how exactly that is known, alike."""
-    logged, slack = flight.logged_V, flight.half_step_V
-    as_float32 = logged.astype(np.float32).astype(float)
-    steps = np.array(setup.channel.step_V)
-    if setup.arithmetic == FLOAT64:
-        rounded = (
-            np.abs(np.spacing(logged.astype(np.float32))) * 0.5 * np.array_equal(as_float32, logged, equal_nan=True)
-        )
-        slack = slack + DOUBLE_SLACK_V + rounded
-    elif not flight.inputs_are_rounded and not steps.any():
-        logged = as_float32
-    slack = np.where(np.isnan(slack), 0.0, slack) + GRID_SLACK * steps
-    # Limits are read off the log, perhaps in more digits than float32 has.
-    at_limits = np.minimum(np.abs(logged - setup.channel.low_V), np.abs(logged - setup.channel.high_V)) < LIMIT_SLACK_V
-    slack = slack + LIMIT_SLACK_V * at_limits
-    logged, slack = (np.array(advanced(values, setup.output_lag), order="C") for values in (logged, slack))
-    logged[len(logged) + min(0, *setup.angle_lags) :] = np.nan  # the log ends before the angles that it holds late
-    return logged, slack
