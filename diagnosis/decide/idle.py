@@ -15,6 +15,8 @@ from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.weighing import Explanations, beyond_spread, read_off
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
+from diagnosis.library.effect_library import EffectLibrary
+from diagnosis.search.exchange import is_twin
 from diagnosis.validate.fitted_logs import FittedLogs
 from diagnosis.validate.score import Errors, by_output
 from jobs.thread_map import thread_map
@@ -86,7 +88,8 @@ def without_idle(explanations: Explanations, shares: Shares) -> tuple[Explanatio
     In one output at least an effect must do FORMS_OFF of what the hypothesis predicts better, and surely: in the logs that were not fitted,
     or in those that were where the others cannot tell. What parameters beyond their spread cost counts: where these leave it to take an
     effect's part, it is not idle.
-    The same without an idle effect keeps the evidence that it has beside it: what that explains is there whatever its name.
+    The same without an idle effect keeps the evidence that it has beside it: what that explains is there whatever its name. So it is for
+    what is hardly told from that, whether or not it was tried there.
     """
     idle = [
         (entry, fewer, nats, least)
@@ -109,9 +112,20 @@ def without_idle(explanations: Explanations, shares: Shares) -> tuple[Explanatio
     for entry, fewer, *_ in idle:  # triples first, so that what a pair has beside an idle effect reaches a single one
         beside[fewer] = max(beside.get(fewer, -np.inf), beside.get(entry, -np.inf), entry.evidence)
     gone = {entry for entry, *_ in idle}
-    return replace(
-        explanations, named=tuple(entry for entry in explanations.named if entry not in gone), beside=beside
-    ), rules
+    kept = tuple(entry for entry in explanations.named if entry not in gone)
+    return replace(explanations, named=kept, beside=_beside_twins(explanations.library, kept, beside)), rules
+
+
+def _beside_twins(
+    library: EffectLibrary, kept: Sequence[FittedHypothesis], beside: Mapping[FittedHypothesis, float]
+) -> dict[FittedHypothesis, float]:
+    """Evidence beside idle effects, of what has some and of its twins, beside which these gain as much, but lend no more than they have."""
+    found = dict(beside)
+    for entry in (entry for entry in kept if entry in beside):
+        for twin in (other for other in kept if is_twin(library, other, entry)):
+            gained = twin.evidence + beside[entry] - entry.evidence
+            found[twin] = max(found.get(twin, -np.inf), min(gained, beside[entry]))
+    return found
 
 
 def _hardest(said: Sequence[Sequence[Said]], spared: float) -> tuple[float, float]:

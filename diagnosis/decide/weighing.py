@@ -211,7 +211,7 @@ def first_share(case: Case, weighed: Weighed) -> float:
     """How probable it is that the first name, or what data can hardly tell from it, says what is missing or a part of it."""
     told = zip(weighed.fitted, weighed.probabilities, strict=True)
     return weighed.partly + sum(
-        p for entry, p in told if entry is weighed.fitted[0] or is_twin(case, entry, weighed.fitted[0])
+        p for entry, p in told if entry is weighed.fitted[0] or is_twin(case.library, entry, weighed.fitted[0])
     )
 
 

@@ -28,6 +28,25 @@ def foretold_of(case: Case, hypothesis: Hypothesis) -> float:
     return 0.0 if runs is None else foretold_nats(runs)
 
 
+def better_noise_of(case: Case, hypothesis: Hypothesis) -> float:
+    """What noise of its own could gain a hypothesis under another's: by what its innovations foretell, and by how large they are; 0 where
+    the filter left all bounds."""
+    runs = passes(case, hypothesis)
+    return 0.0 if runs is None else foretold_nats(runs) + rescaled_nats(runs)
+
+
+def rescaled_nats(runs: Sequence[Pass]) -> float:
+    """Nats that innovations w of n readings an output gain once they are as large as their filter says, s the mean of w^2:
+
+    (1)  n / 2 (s - 1 - ln s)
+    """
+    w = np.concatenate([run.w for run in runs])
+    n, squares = np.isfinite(w).sum(axis=0), np.nansum(w**2, axis=0)
+    read = squares > 0.0
+    s = squares[read] / n[read]
+    return float(0.5 * n[read] @ (s - 1.0 - np.log(s)))
+
+
 def foretold_nats(runs: Sequence[Pass]) -> float:
     """Nats that a linear law of all outputs' past gains over white innovations, less what chance makes of its numbers."""
     count = runs[0].w.shape[1]

@@ -210,7 +210,7 @@ def beam_of(
 
 def _same_so_far(case: Case, entry: FittedHypothesis, other: FittedHypothesis) -> bool:
     """Whether the same will grow beside both: they are twins, and these data do not tell them apart."""
-    return other.evidence - entry.evidence <= decisions.PLAIN_TO_SEE and is_twin(case, entry, other)
+    return other.evidence - entry.evidence <= decisions.PLAIN_TO_SEE and is_twin(case.library, entry, other)
 
 
 def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> list[Job]:
@@ -223,7 +223,7 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     with an idle effect. What is far from the best is left as it is."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
     best = [entry for entry in best if entry.evidence > least_near(best[0], nominal)]
-    twins = [entry for entry in best if is_twin(case, entry, best[0])]
+    twins = [entry for entry in best if is_twin(case.library, entry, best[0])]
     asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.NEXT], *twins])]
     for step in (refined, in_all_logs, once_more, with_own_events):
         ends = thread_map(lambda names, step=step: step(case, found[names]), asked)

@@ -17,6 +17,7 @@ from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
 
@@ -86,7 +87,7 @@ def _twins_begun(
     """Where the twins of one effect begin, those that are not nearly as likely already: the likeliest of their starts in its place, as a
     linear problem knows nothing of where a spring rests."""
     rest = frozenset(first.effects) - {name}
-    wanted = {twin for twin in twins_of(case, name) if not _is_near(found.get(rest | {twin}), first)}
+    wanted = {twin for twin in twins_of(case.library, name) if not _is_near(found.get(rest | {twin}), first)}
     promised = {job.score_test.effect: job for job in _instead(case, first, name, wanted)}
     lack, starts = first.fit.hypothesis.lacks.get(name), []
     for twin in sorted(wanted):
@@ -127,16 +128,16 @@ def _of_its_size(
     ]
 
 
-def twins_of(case: Case, name: str) -> set[str]:
+def twins_of(library: EffectLibrary, name: str) -> set[str]:
     """The candidates that data hardly tell from an effect, whichever of both says so."""
-    own = case.library.effects[name].twins
-    return {twin for twin in case.library.candidates if twin in own or name in case.library.effects[twin].twins}
+    own = library.effects[name].twins
+    return {twin for twin in library.candidates if twin in own or name in library.effects[twin].twins}
 
 
-def is_twin(case: Case, one: FittedHypothesis, other: FittedHypothesis) -> bool:
+def is_twin(library: EffectLibrary, one: FittedHypothesis, other: FittedHypothesis) -> bool:
     """Whether two hypotheses differ by one effect that data hardly tell from the other one."""
     mine, others = set(one.effects) - set(other.effects), set(other.effects) - set(one.effects)
-    return len(mine) == len(others) == 1 and mine <= twins_of(case, others.pop())
+    return len(mine) == len(others) == 1 and mine <= twins_of(library, others.pop())
 
 
 def _exchanged(

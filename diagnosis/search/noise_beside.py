@@ -4,11 +4,12 @@ Noise that is white alone prefers names that colour it. So what could yet lead i
 where that promises more.
 """
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, least_near
-from diagnosis.fit.foretold import foretold_of
+from diagnosis.fit.foretold import better_noise_of
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.nominal import with_memory, with_memory_of
@@ -34,10 +35,7 @@ def with_noise_beside(
     that lead, and the likeliest without each of its effects.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
-    near = (entry for entry in ranked if entry.evidence > ranked[0].evidence - decisions.PLAIN_TO_SEE)
-    noisy = ((entry, with_own) for entry in near if (with_own := _with_memory(case, entry)) is not None)
-    taken = ((entry, with_own) for entry, with_own in noisy if has_memory(case, with_own.fit.hypothesis))
-    best, first = next(taken, (None, None))
+    best, first = _first_that_takes_any(case, ranked)
     if best is None or first is None:
         return []
     sizes = {len(entry.effects) for entry in fitted}
@@ -48,6 +46,23 @@ def with_noise_beside(
     beside = [*_twins(case, ranked, found), *_fewer(ranked, max(found, key=lambda entry: entry.evidence))]
     further = [entry for entry in dict.fromkeys(beside) if frozenset(entry.effects) not in known]
     return [*found, *_all_noisy(case, further, first)]
+
+
+def _first_that_takes_any(
+    case: Case, ranked: Sequence[FittedHypothesis]
+) -> tuple[FittedHypothesis, FittedHypothesis] | tuple[None, None]:
+    """The first of the best that takes noise with a memory, and it with that; after them the best of each fewer effects that it brings near
+    them, as an effect that was taken in for want of such noise leaves none."""
+    least = ranked[0].evidence - decisions.PLAIN_TO_SEE
+    near = [entry for entry in ranked if entry.evidence > least]
+    sizes = range(len(ranked[0].effects) - 1, 0, -1)
+    fewer = (next((entry for entry in ranked if len(entry.effects) == size), None) for size in sizes)
+    could = (entry for entry in fewer if entry and entry not in near and _reach(case, entry, 0.0) > least)
+    for entry in itertools.chain(near, could):
+        noisy = _with_memory(case, entry)
+        if noisy is not None and noisy.evidence > least and has_memory(case, noisy.fit.hypothesis):
+            return entry, noisy
+    return None, None
 
 
 def _twins(
@@ -78,7 +93,7 @@ def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypot
     """
     if not asked:
         return []
-    left = _foretold(case, first)
+    left = _promised(case, first)
     begun = dict(zip(asked, thread_map(lambda entry: _under_noise_of(case, entry, first), asked), strict=True))
     reach = dict(zip(asked, thread_map(lambda entry: _reach(case, begun[entry], left), asked), strict=True))
     least = max(entry.evidence for entry in (first, *begun.values())) - decisions.PLAIN_TO_SEE
@@ -112,7 +127,7 @@ def _until_noise(
 def _reach(case: Case, fitted: FittedHypothesis, left: float) -> float:
     """The evidence that noise with a memory could give a hypothesis, by what its innovations foretell beyond `left` nats: more than that,
     as parameters come back which bent for want of it."""
-    return fitted.evidence + decisions.PARAMETERS_BACK * max(_foretold(case, fitted) - left, 0.0)
+    return fitted.evidence + decisions.PARAMETERS_BACK * max(_promised(case, fitted) - left, 0.0)
 
 
 def _under_noise_of(case: Case, fitted: FittedHypothesis, known: FittedHypothesis) -> FittedHypothesis:
@@ -143,7 +158,7 @@ def _own_noise(
         if shared is None:
             continue
         found.append(shared)
-        promised = _foretold(case, shared) - left
+        promised = _promised(case, shared) - left
         # Under noise with a memory parameters have come back already.
         back = 1.0 if has_memory(case, shared.fit.hypothesis) else decisions.PARAMETERS_BACK
         if promised < decisions.TAKEN_IN or shared.evidence + back * promised < least:
@@ -166,7 +181,7 @@ def _in_reach(
 ) -> list[FittedHypothesis]:
     """Those of the others, best first, that noise with a memory could bring to the `least` evidence: under that of the likeliest, `noisy`,
     to first order, or under one of their own, by what their innovations foretell. The best of them, and those that promise most by each."""
-    left = _foretold(case, noisy)
+    left = _promised(case, noisy)
 
     def promised(entry: FittedHypothesis) -> tuple[float, float]:
         return entry.evidence + _further(case, entry, noisy), _reach(case, entry, left)
@@ -188,12 +203,12 @@ def hardly_told(case: Case, first: FittedHypothesis, others: Sequence[FittedHypo
     a lag there, and noise that is taken beside some of them must be beside all."""
     found = [first]
     for entry in found:  # which grows on the way
-        found += [other for other in others if other not in found and is_twin(case, other, entry)]
+        found += [other for other in others if other not in found and is_twin(case.library, other, entry)]
     return found[1:]
 
 
-def _foretold(case: Case, fitted: FittedHypothesis) -> float:
-    return foretold_of(case, fitted.fit.hypothesis)
+def _promised(case: Case, fitted: FittedHypothesis) -> float:
+    return better_noise_of(case, fitted.fit.hypothesis)
 
 
 def _with_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:

@@ -71,6 +71,28 @@ def test_an_effect_must_do_its_part_beside_any_that_it_stands_with(
     assert without_idle(explanations, shares)[0].named == (both, rubbing, pulled)
 
 
+def test_what_an_idle_effect_gained_it_gains_beside_the_twins_too(
+    pulled_case: Case, fitted: tuple[FittedHypothesis, ...]
+) -> None:
+    # Truth by hand: an idle force brings a lag from 60 to 90 nats: so it would its twin of 50, to 80, and what is 85 already to no more
+    # than those 90; what is no twin stays as it is.
+    _, rubbing, _, plain = fitted
+    both, lag, twin, likely, other = (
+        replace(rubbing, effects=effects, evidence=evidence)
+        for effects, evidence in (
+            (("theta_sensor.lag", "arm.offset_force"), 90.0),
+            (("theta_sensor.lag",), 60.0),
+            (("input.lag",), 50.0),
+            (("theta_sensor.delay",), 85.0),
+            (("arm.coulomb",), 50.0),
+        )
+    )
+    explanations = Explanations((both, lag, twin, likely, other), plain, pulled_case.library, 5.0)
+    found, _ = without_idle(explanations, {(both, lag): [[Said(1.0, SURE, 40.0, 100)]]})
+    assert found.named == (lag, twin, likely, other)
+    assert [found.evidence_beside(entry) for entry in found.named] == [90.0, 80.0, 90.0, 50.0]
+
+
 def test_what_a_large_effect_does_to_one_output_says_nothing_of_another(
     pulled_case: Case, fitted: tuple[FittedHypothesis, ...]
 ) -> None:

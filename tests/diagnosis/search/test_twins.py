@@ -80,17 +80,17 @@ def late() -> Case:
 
 
 def test_a_lag_before_the_plant_has_the_lag_behind_it_among_its_twins(late: Case) -> None:
-    assert {"theta_sensor.lag", "input.delay", "arm.flexible_mode"} <= twins_of(late, "input.lag")
-    assert is_twin(late, named("input.lag", "arm.coulomb"), named("arm.coulomb", "theta_sensor.lag"))
-    assert not is_twin(late, named("input.lag", "arm.coulomb"), named("input.lag", "arm.offset_force"))
-    assert not is_twin(late, named("input.lag"), named("input.lag", "arm.coulomb"))
+    assert {"theta_sensor.lag", "input.delay", "arm.flexible_mode"} <= twins_of(late.library, "input.lag")
+    assert is_twin(late.library, named("input.lag", "arm.coulomb"), named("arm.coulomb", "theta_sensor.lag"))
+    assert not is_twin(late.library, named("input.lag", "arm.coulomb"), named("input.lag", "arm.offset_force"))
+    assert not is_twin(late.library, named("input.lag"), named("input.lag", "arm.coulomb"))
 
 
 def test_noise_is_taken_beside_all_that_is_hardly_told_from_one_another(late: Case) -> None:
     # A lag before the arm is no twin of a delay behind it, but both are of a lag behind it; a constant force is of none.
     names = ("theta_sensor.delay", "arm.offset_force", "theta_sensor.lag", "input.lag")
     asked = [replace(named(name), evidence=-float(place)) for place, name in enumerate(names)]
-    assert not is_twin(late, asked[0], asked[3])
+    assert not is_twin(late.library, asked[0], asked[3])
     assert [entry.effects for entry in hardly_told(late, asked[0], asked[1:])] == [
         ("theta_sensor.lag",),
         ("input.lag",),
@@ -245,6 +245,18 @@ def test_where_the_likeliest_takes_none_noise_is_sought_beside_no_other() -> Non
     assert decisions.PARAMETERS_BACK * promised > 1.5 * decisions.PLAIN_TO_SEE
     entry = replace(pull, evidence=drive.evidence - 1.5 * decisions.PLAIN_TO_SEE)
     assert beside_noise(case, [drive, entry]) == []
+
+
+def test_where_an_effect_took_the_place_of_noise_it_is_sought_beside_what_has_one_less(late: Case) -> None:
+    # Truth: a lag of the drive under a smooth torque. A pair that leaves no noise, as a further effect took its part, is near what the lag
+    # alone comes to with noise, or beyond.
+    drive = fitted_with(late, LAG)
+    (noisy,) = beside_noise(late, [drive])
+    pair = fitted_with(late, {**LAG, "arm.offset_force": {"offset": 1e-5}})
+    for further, asked in ((0.5, True), (1.5, False)):
+        entry = replace(pair, evidence=noisy.evidence + further * decisions.PLAIN_TO_SEE)
+        found = {one.effects for one in beside_noise(late, [entry, drive])}
+        assert (drive.effects in found) is asked
 
 
 def test_between_twins_noise_decides_where_one_lacks_no_more_than_it_gained(late: Case) -> None:
