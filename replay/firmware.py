@@ -21,12 +21,12 @@ from records.logs.sidecar import DOUBLE
 from records.table import ControllerTable
 from records.text.units import units_of
 from replay.arithmetic import FIXED, Replayed, misread_in_fixed, replayed, replayed_in_fixed
-from replay.columns import OF_THE_COLUMNS
+from replay.causes.columns import OF_THE_COLUMNS
+from replay.causes.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
+from replay.causes.printed import agrees_as_printed
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
 from replay.follower import MISREAD, UNLOGGED
 from replay.law import FLOAT32, FLOAT64
-from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
-from replay.printed import agrees_as_printed
 from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channel_cause, explain, other_readings
 from replay.variants import EARLY_OUTPUT, LATE_OUTPUT
 

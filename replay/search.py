@@ -12,7 +12,11 @@ from records.errors import BadInput
 from records.table import ControllerTable
 from replay import thresholds
 from replay.build import fused_outputs
-from replay.columns import OFFSET, constant_inputs, given_columns, output_lines
+from replay.causes.columns import OFFSET, constant_inputs, given_columns, output_lines
+from replay.causes.lone import lone_variants
+from replay.causes.midair import begins_in_flight
+from replay.causes.overflow import angles_that_wrap, output_wraps, sums_that_overflow
+from replay.causes.prefilter import fitted_prefilters
 from replay.flight import ReplayedLog, readings
 from replay.follower import (
     MISREAD,
@@ -26,10 +30,6 @@ from replay.follower import (
     Trace,
 )
 from replay.law import FLOAT32, ReplayLaw, Setup, channel_agrees
-from replay.lone import lone_variants
-from replay.midair import begins_in_flight
-from replay.overflow import angles_that_wrap, output_wraps, sums_that_overflow
-from replay.prefilter import fitted_prefilters
 from replay.variants import Variant, variants
 from replay.workshop import GRID_SLACK, Workshop
 

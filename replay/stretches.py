@@ -18,11 +18,11 @@ from records.table import ControllerTable
 from records.text.units import units_of
 from replay import thresholds
 from replay.arithmetic import replayed
+from replay.causes.midair import begins_in_flight
 from replay.firmware import CLEARED, NOT_FOUND, FirmwareReplay, demand_own, replay_firmware
 from replay.flight import flight_of, has_replayable_columns
 from replay.follower import UNLOGGED, Follower
 from replay.law import Setup
-from replay.midair import begins_in_flight
 from replay.search import MISSING_ROWS
 from replay.workshop import Workshop
 

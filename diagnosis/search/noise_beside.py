@@ -35,7 +35,7 @@ def with_noise_beside(
     that lead, and the likeliest without each of its effects.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
-    best, first = _first_that_takes_any(case, ranked)
+    best, first = _first_that_takes_any(case, ranked) if ranked else (None, None)
     if best is None or first is None:
         return []
     sizes = {len(entry.effects) for entry in fitted}

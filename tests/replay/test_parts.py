@@ -8,15 +8,15 @@ import pytest
 
 from records.log import RunLog
 from replay.arithmetic import replayed, replayed_in_fixed
-from replay.columns import SCALED, TURNED, UNIT, constant_inputs, given_columns, output_lines
+from replay.causes.columns import SCALED, TURNED, UNIT, constant_inputs, given_columns, output_lines
+from replay.causes.lone import lone_variants
+from replay.causes.midair import begins_in_flight
+from replay.causes.overflow import output_wrap
+from replay.causes.prefilter import fitted_prefilters
 from replay.digits import printing
 from replay.flight import ReplayedLog, advanced, flight_of, has_replayable_columns, lagged
 from replay.follower import OUTPUT_HELD, Follower
 from replay.law import ReplayLaw, Setup
-from replay.lone import lone_variants
-from replay.midair import begins_in_flight
-from replay.overflow import output_wrap
-from replay.prefilter import fitted_prefilters
 from replay.search import explain
 from replay.variants import grid_step, steps_in_words, variants
 from replay.workshop import Workshop

@@ -10,9 +10,9 @@ import pytest
 from design.law import FloatLaw
 from records.log import RunLog, load_log
 from records.table import load_table
+from replay.causes.printed import agrees_as_printed
 from replay.digits import printing
 from replay.flight import flight_of
-from replay.printed import agrees_as_printed
 from replay.stretches import replay_stretches
 from sim.bind import bind
 from sim.columns import log_columns

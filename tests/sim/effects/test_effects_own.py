@@ -50,7 +50,7 @@ OTHER_THINGS: Mapping[str, tuple[str, set[str]]] = {
     "identification/frequency/result.py": ("a cost", {"J"}),
     "identification/proof/linear_rotor.py": ("a parameter of the plant", {"K"}),
     "replay/law.py": ("rows of a controller's table", {"a", "c", "p", "q"}),
-    "replay/lone.py": ("rows of a controller's table", {"a", "p"}),
+    "replay/causes/lone.py": ("rows of a controller's table", {"a", "p"}),
     "replay/variants.py": ("rows of a controller's table", {"a", "p"}),
     "twinlaw/command.py": ("modes of a file", {"r", "w"}),
     "twinlaw/pages/diagnose/answers.py": ("a heading", {"phase"}),
