@@ -33,7 +33,7 @@ def test_the_page_names_every_cause_and_no_other() -> None:
 
 def words_of_the_replay() -> set[str]:
     """Every text of several words joined by underscores in the replay's sources."""
-    files = list((ROOT / "replay").glob("*.py"))
+    files = list((ROOT / "replay").rglob("*.py"))
     assert files
     trees = [ast.parse(path.read_text(encoding="utf-8")) for path in files]
     texts = [node.value for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)]
