@@ -32,7 +32,7 @@ def with_noise_beside(
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
     Where it does so beside the best, evidence under it is not to be compared with evidence without. Where the best leave none, it would
     only take what the others lack. Of each number of effects those are asked that it could bring near; then what is hardly told from those
-    that lead, and the likeliest without each of its effects.
+    that lead, and the likeliest without each of its effects and with one more.
     """
     ranked = sorted(fitted, key=lambda entry: -entry.evidence)
     best, first = _first_that_takes_any(case, ranked) if ranked else (None, None)
@@ -43,7 +43,8 @@ def with_noise_beside(
     asked = [entry for group in others for entry in _in_reach(case, first, group, least_near(first, nominal))]
     found = [first, *_all_noisy(case, asked, first)]
     known = {frozenset(entry.effects) for entry in found}
-    beside = [*_twins(case, ranked, found), *_fewer(ranked, max(found, key=lambda entry: entry.evidence))]
+    likeliest = max(found, key=lambda entry: entry.evidence)
+    beside = [*_twins(case, ranked, found), *_fewer(ranked, likeliest), *_more(ranked, likeliest)]
     further = [entry for entry in dict.fromkeys(beside) if frozenset(entry.effects) not in known]
     return [*found, *_all_noisy(case, further, first)]
 
@@ -82,6 +83,12 @@ def _fewer(fitted: Sequence[FittedHypothesis], likeliest: FittedHypothesis) -> I
     """The likeliest without each of its effects: whether one is needed is asked under one noise."""
     fewer = len(likeliest.effects) - 1
     return (entry for entry in fitted if len(entry.effects) == fewer and set(entry.effects) < set(likeliest.effects))
+
+
+def _more(fitted: Sequence[FittedHypothesis], likeliest: FittedHypothesis) -> Sequence[FittedHypothesis]:
+    """The best of those that have one effect beside the likeliest's: whether one is missing is asked under one noise too."""
+    more = len(likeliest.effects) + 1
+    return [e for e in fitted if len(e.effects) == more and set(e.effects) > set(likeliest.effects)][: decisions.NEXT]
 
 
 def _all_noisy(case: Case, asked: Sequence[FittedHypothesis], first: FittedHypothesis) -> list[FittedHypothesis]:

@@ -259,6 +259,19 @@ def test_where_an_effect_took_the_place_of_noise_it_is_sought_beside_what_has_on
         assert (drive.effects in found) is asked
 
 
+def test_whether_one_is_missing_beside_the_likeliest_is_asked_under_its_noise(late: Case) -> None:
+    # Truth: a pair that is far behind without noise, and that no bound brings near, is asked for as it has what leads and one more; a pair
+    # without that is not.
+    drive, far = fitted_with(late, LAG), -10.0 * decisions.PLAIN_TO_SEE
+    pull, rub = {"arm.offset_force": {"offset": 1e-5}}, {"arm.coulomb": {"b": 4e-4}}
+    with_it, without = (fitted_with(late, effects) for effects in ({**LAG, **pull}, {**rub, **pull}))
+    with decisions.changed("PARAMETERS_BACK", 0.0):  # whatever its own innovations foretell
+        known = (drive, *(replace(pair, evidence=drive.evidence + far) for pair in (with_it, without)))
+        found = {one.effects: one for one in beside_noise(late, known)}
+    assert without.effects not in found
+    assert "arm.gust" in found[with_it.effects].fit.hypothesis.effects
+
+
 def test_between_twins_noise_decides_where_one_lacks_no_more_than_it_gained(late: Case) -> None:
     # Truth: noise gains some hundred nats beside the drive's lag; the sensor's, its twin, is asked where it lacks nine tenths of that,
     # which no bound brings near, and not where it lacks more than all of it.
