@@ -53,7 +53,7 @@ def _first_that_takes_any(
     case: Case, ranked: Sequence[FittedHypothesis]
 ) -> tuple[FittedHypothesis, FittedHypothesis] | tuple[None, None]:
     """The first of the best that takes noise with a memory, and it with that; after them the best of each fewer effects that it brings near
-    them, as an effect that was taken in for want of such noise leaves none."""
+    them and that then predicts as well, as an effect that was taken in for want of such noise leaves none, and predicts nothing."""
     least = ranked[0].evidence - decisions.PLAIN_TO_SEE
     near = [entry for entry in ranked if entry.evidence > least]
     sizes = range(len(ranked[0].effects) - 1, 0, -1)
@@ -61,9 +61,15 @@ def _first_that_takes_any(
     could = (entry for entry in fewer if entry and entry not in near and _reach(case, entry, 0.0) > least)
     for entry in itertools.chain(near, could):
         noisy = _with_memory(case, entry)
-        if noisy is not None and noisy.evidence > least and has_memory(case, noisy.fit.hypothesis):
+        if noisy is None or noisy.evidence <= least or not has_memory(case, noisy.fit.hypothesis):
+            continue
+        if entry in near or _predicts_as_well(case, noisy, ranked[0]):
             return entry, noisy
     return None, None
+
+
+def _predicts_as_well(case: Case, noisy: FittedHypothesis, other: FittedHypothesis) -> bool:
+    return FittedLogs(case).gain(noisy.fit.hypothesis, other.fit.hypothesis) >= -decisions.MATTERS
 
 
 def _twins(
@@ -237,5 +243,4 @@ def _noise_alone(case: Case, fitted: FittedHypothesis, found: Fit) -> FittedHypo
     told = as_fitted(case, found)
     if told.evidence <= fitted.evidence:
         return fitted
-    gain = FittedLogs(case).gain(told.fit.hypothesis, fitted.fit.hypothesis)
-    return told if gain >= -decisions.MATTERS else None
+    return told if _predicts_as_well(case, told, fitted) else None
