@@ -119,7 +119,7 @@ def without_idle(explanations: Explanations, shares: Shares) -> tuple[Explanatio
 def _beside_twins(
     library: EffectLibrary, kept: Sequence[FittedHypothesis], beside: Mapping[FittedHypothesis, float]
 ) -> dict[FittedHypothesis, float]:
-    """Evidence beside idle effects, of what has some and of its twins, beside which these gain as much, but lend no more than they have."""
+    """Evidence beside idle effects: of what has some, and of its twins, beside which these gain as much, yet to no more than it has."""
     found = dict(beside)
     for entry in (entry for entry in kept if entry in beside):
         for twin in (other for other in kept if is_twin(library, other, entry)):

@@ -28,7 +28,7 @@ from sim.bind import evaluated
 from sim.effect import Effect, Role
 
 Array = NDArray[np.float64]
-SWEEPS = 12
+SWEEPS = 12  # times that each frame is judged beside what is supposed of all others
 LITTLE_GAINED = 0.005  # of what losses gain, below which another round is not worth its time
 LOSS_ROUNDS = 8  # with what was found in the hypothesis there is less process noise, and more shows
 LOSS_SHARES = np.geomspace(1e-3, 0.8, 60)

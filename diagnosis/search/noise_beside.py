@@ -26,7 +26,7 @@ def with_noise_beside(
     case: Case, fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis
 ) -> list[FittedHypothesis]:
     """Hypotheses with the noise with a memory that the logs tell of beside their names, each with its own, where that is likelier; none
-    where the best of them, and all that come near it, take none or take what is no noise.
+    where the best of them, all that come near it, and what predicts as well with fewer effects take none or take what is no noise.
 
     Noise that is white alone prefers names that colour it: a lag of the sensor smooths what in truth is a smooth torque. But noise may
     also take what a name or a parameter explains: a second of these logs is predicted worse for it then.
