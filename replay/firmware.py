@@ -39,10 +39,21 @@ AGREES_IN_DOUBLE = (
 IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"
 ROUNDING_V = 1e-3
 BEHIND_LIMIT = 2  # rows off the limits after which what they did to the law's state shows in its answer
-# What is the log's doing alone: but for what it lacks, or holds twice, the firmware did as its table says.
-CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, MISREAD, INPUT_UNKNOWN, IN_DOUBLE)
+# What is the log's doing alone: but for what it lacks, or holds twice or too late, the firmware did as its table says.
+CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED, MISREAD, INPUT_UNKNOWN, IN_DOUBLE, LOGGED_LATE)
 UNSEEN = ("begins_in_flight", "fused_multiply_add")
-COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE, ANGLE_LOGGED_LATE, LATE_OUTPUT)
+COLUMNS = (*OF_THE_COLUMNS, ANGLE_LOGGED_LATE, LATE_OUTPUT)
+# What no firmware can do, so that the log holds it in wrong rows; and how to mend that.
+AGAINST_TIME = {
+    EARLY_OUTPUT: (
+        "commands in rows before those of the angles that they answer",
+        "the commands down, or the angles and references up",
+    ),
+    ANGLE_LOGGED_LATE: (
+        "angles in rows behind those of the commands that answer them",
+        "these angles up, or all other columns down",
+    ),
+}
 NINE_DIGITS = "print nine digits, which hold all of a float32"
 ANGLES_ROUNDED = f"the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees: {NINE_DIGITS}"
 
@@ -99,14 +110,12 @@ class FirmwareReplay:
 
 def demand_causal(path: Path, replay: FirmwareReplay) -> None:
     """Raise BadInput where the controller's own code gives the logged commands only in later rows: none answers what it has yet to read."""
-    if EARLY_OUTPUT in names_of(replay.cause or ""):
-        raise BadInput(
-            "columns",
-            str(path),
-            f"commands in rows before those of the angles that they answer: {replay.sentence}",
-            "columns in the rows of their time",
-            "move the commands down, or the angles and references up",
-        )
+    names = names_of(replay.cause or "")
+    for name, (got, remedy) in AGAINST_TIME.items():
+        if name in names:
+            raise BadInput(
+                "columns", str(path), f"{got}: {replay.sentence}", "columns in the rows of their time", f"move {remedy}"
+            )
 
 
 def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[ControllerTable] = ()) -> FirmwareReplay:

@@ -75,7 +75,9 @@ class Follower:
         self._wanted, self._slack = workshop.answers(setup)
         self._loops = setup.loops
         self._lacks = workshop.lacks
-        self._late = np.array([setup.reference_lag] * self._loops + list(each(setup.angle_lags, self._loops))) > 0
+        self._late = (
+            np.array([lag for lags in (setup.reference_lags, setup.angle_lags) for lag in each(lags, self._loops)]) > 0
+        )
 
     def follow(self) -> Trace:
         """Run through the log, accepting incidents."""

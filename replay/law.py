@@ -126,7 +126,7 @@ Folds = tuple[Fold | None, ...]
 
 @dataclass(frozen=True)
 class Setup:
-    """A firmware that may have flown: numbers, switches, and by how many samples its inputs and its output are late.
+    """A firmware that may have flown: numbers, switches, and by how many samples its inputs and its outputs are late.
 
     `prefilter_gains` replaces b of the axes' reference filters, `prefilter_poles` their number; None is the table's own. `folds` are
     of the angles; `columns` and `signs` say which of references and angles the law took for which, each its own without. Of what is one
@@ -141,8 +141,8 @@ class Setup:
     prefilter_poles: int | None = None
     prefilter_gains: Gains | None = None
     angle_lags: tuple[int, ...] = (0,)
-    reference_lag: int = 0
-    output_lag: int = 0
+    reference_lags: tuple[int, ...] = (0,)
+    output_lags: tuple[int, ...] = (0,)
     channel: Channel = Channel()
     overflow: Overflow = Overflow()
     folds: Folds = (None,)

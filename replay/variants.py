@@ -38,7 +38,12 @@ def by_angles(table: ControllerTable) -> dict[str, tuple[int, ...]]:
     """All angles, and each of them, by name: which are meant."""
     names = [loop.axis for loop in table.loops]
     every = {} if len(names) == 1 else {"both angles" if len(names) == 2 else "all angles": (1,) * len(names)}
-    return every | {f"the {name}": tuple(int(name == other) for other in names) for name in names}
+    return every | by_loop([f"the {name}" for name in names])
+
+
+def by_loop(names: Sequence[str]) -> dict[str, tuple[int, ...]]:
+    """What each loop has, by name: which is meant."""
+    return {name: tuple(int(name == other) for other in names) for name in names}
 
 
 def variants(table: ControllerTable, flight: ReplayedLog, others: Sequence[ControllerTable]) -> list[Variant]:
@@ -64,17 +69,17 @@ def _timing(table: ControllerTable) -> Iterator[Variant]:
             change = partial(replace, angle_lags=tuple(samples * lag for lag in meant))
             yield Variant("stale_sample", "angles", sentence, change)
         yield Variant(
-            "stale_reference", "references", f"used references {what} old", partial(replace, reference_lag=samples)
+            "stale_reference", "references", f"used references {what} old", partial(replace, reference_lags=(samples,))
         )
         yield from outputs_off(samples, what)
 
 
-def outputs_off(samples: int, what: str) -> Iterator[Variant]:
-    """The output so many samples late, and early, as `what` says."""
-    late = f"sent its output {what} late, or the log has it so"
-    yield Variant(LATE_OUTPUT, "output", late, partial(replace, output_lag=samples))
-    early = f"would have sent its output {what} before it read the angles, so the log has it early"
-    yield Variant(EARLY_OUTPUT, "output", early, partial(replace, output_lag=-samples))
+def outputs_off(samples: int, what: str, which: str = "its output", meant: tuple[int, ...] = (1,)) -> Iterator[Variant]:
+    """The outputs that are meant so many samples late, and early, as `what` says."""
+    late = f"sent {which} {what} late, or the log has it so"
+    yield Variant(LATE_OUTPUT, "output", late, partial(replace, output_lags=tuple(samples * one for one in meant)))
+    early = f"would have sent {which} {what} before it read the angles, so the log has it early"
+    yield Variant(EARLY_OUTPUT, "output", early, partial(replace, output_lags=tuple(-samples * one for one in meant)))
 
 
 def _other_tables(table: ControllerTable, others: Sequence[ControllerTable]) -> Iterator[Variant]:

@@ -27,14 +27,14 @@ class Workshop:
 
     def inputs(self, setup: Setup) -> NDArray[Any]:
         """What the setup's law is given (n, 2 loops): references, angles."""
-        key = (setup.angle_lags, setup.reference_lag, setup.folds, setup.columns, setup.signs, setup.arithmetic)
+        key = (setup.angle_lags, setup.reference_lags, setup.folds, setup.columns, setup.signs, setup.arithmetic)
         if key not in self._inputs:
             self._inputs[key] = _inputs(self.flight, setup).astype(number_type(setup.arithmetic))
         return self._inputs[key]
 
     def answers(self, setup: Setup) -> tuple[Array, Array]:
         """What the setup's law should answer (n, loops), and how exactly that is known, alike; in V."""
-        key = (setup.arithmetic, setup.channel, setup.output_lag, setup.angle_lags)
+        key = (setup.arithmetic, setup.channel, setup.output_lags, setup.angle_lags)
         if key not in self._answers:
             self._answers[key] = _wanted(self.flight, setup)
         return self._answers[key]
@@ -43,10 +43,10 @@ class Workshop:
 def _inputs(flight: ReplayedLog, setup: Setup) -> Array:
     """What the law was given (n, 2 loops): references and angles, each as late as the setup says."""
     folds = zip(flight.angle_rad.T, flight.steps_rad, each(setup.folds, setup.loops), strict=True)
-    folded = [_folded(*column)[:, np.newaxis] for column in folds]
-    angles = [lagged(column, lag) for column, lag in zip(folded, each(setup.angle_lags, setup.loops), strict=True)]
-    references = lagged(flight.reference_rad, setup.reference_lag)
-    given = np.hstack([references, *angles])
+    angles = [_folded(*column) for column in folds]
+    lags = (*each(setup.reference_lags, setup.loops), *each(setup.angle_lags, setup.loops))
+    columns = zip((*flight.reference_rad.T, *angles), lags, strict=True)
+    given = np.stack([lagged(column, lag) for column, lag in columns], axis=1)
     given = given[:, list(setup.columns)] if setup.columns else given
     return np.ascontiguousarray(given * np.array(setup.signs))
 
@@ -79,6 +79,10 @@ def _wanted(flight: ReplayedLog, setup: Setup) -> tuple[Array, Array]:
     # Limits are read off the log, perhaps in more digits than float32 has.
     at_limits = np.minimum(np.abs(logged - setup.channel.low_V), np.abs(logged - setup.channel.high_V)) < LIMIT_SLACK_V
     slack = slack + LIMIT_SLACK_V * at_limits
-    logged, slack = (np.array(advanced(values, setup.output_lag), order="C") for values in (logged, slack))
+    lags = each(setup.output_lags, setup.loops)
+    logged, slack = (
+        np.stack([advanced(column, lag) for column, lag in zip(values.T, lags, strict=True)], axis=1)
+        for values in (logged, slack)
+    )
     logged[len(logged) + min(0, *setup.angle_lags) :] = np.nan  # the log ends before the angles that it holds late
     return logged, slack

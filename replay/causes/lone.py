@@ -10,7 +10,7 @@ import numpy as np
 from records.table import ControllerTable
 from replay import thresholds
 from replay.law import Setup
-from replay.variants import Variant, by_angles, outputs_off
+from replay.variants import Change, Variant, by_angles, by_loop, outputs_off
 
 PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
 ROWS = ("q_V_rad", "p")
@@ -22,8 +22,9 @@ def lone_variants(table: ControllerTable) -> list[Variant]:
     return [
         *_older_angles(table),
         *_angles_logged_late(table),
-        *_other_times_of_references(),
+        *_other_times_of_references(table),
         *_farther_outputs(),
+        *_single_outputs(table),
         *_last_places(table),
     ]
 
@@ -46,18 +47,36 @@ def _angles_logged_late(table: ControllerTable) -> Iterator[Variant]:
             yield Variant(ANGLE_LOGGED_LATE, "angles", sentence, partial(replace, angle_lags=ahead))
 
 
-def _other_times_of_references() -> Iterator[Variant]:
-    for samples in range(1, thresholds.OLDEST_REFERENCES + 1):
-        late = f"used references that the log holds {_samples(samples)} too late"
-        yield Variant(LOGGED_LATE, "references", late, partial(replace, reference_lag=-samples))
-        if samples > PAIRED_AGE:
-            old = f"used references {_samples(samples)} old"
-            yield Variant("stale_reference", "references", old, partial(replace, reference_lag=samples))
+def _other_times_of_references(table: ControllerTable) -> Iterator[Variant]:
+    """All references late or early together, then each by itself: a column of its own in the log, a message of its own on the line."""
+    loops = [loop.axis for loop in table.loops]
+    alone = by_loop([f"the {name} reference" for name in loops]) if len(loops) > 1 else {}
+    for (which, meant), samples in product(
+        {"references": (1,) * len(loops), **alone}.items(), range(1, thresholds.OLDEST_REFERENCES + 1)
+    ):
+        late = f"used {which} that the log holds {_samples(samples)} too late"
+        yield Variant(LOGGED_LATE, "references", late, _references(-samples, meant))
+        if samples > PAIRED_AGE or which in alone:  # the rest may be paired
+            old = f"used {which} {_samples(samples)} old"
+            yield Variant("stale_reference", "references", old, _references(samples, meant))
+
+
+def _references(samples: int, meant: tuple[int, ...]) -> Change:
+    return partial(replace, reference_lags=tuple(samples * one for one in meant))
 
 
 def _farther_outputs() -> Iterator[Variant]:
     for samples in range(PAIRED_AGE + 1, thresholds.FARTHEST_OUTPUTS + 1):
         yield from outputs_off(samples, _samples(samples))
+
+
+def _single_outputs(table: ControllerTable) -> Iterator[Variant]:
+    """One output late or early, the others in their rows: each has its own register, and its own column in the log."""
+    if len(table.loops) == 1:
+        return
+    for samples in range(1, thresholds.FARTHEST_OUTPUTS + 1):
+        for which, meant in by_loop([loop.input for loop in table.loops]).items():
+            yield from outputs_off(samples, _samples(samples), which, meant)
 
 
 def _samples(count: int) -> str:

@@ -48,6 +48,7 @@ TAMPERED = [
     ),
     (lambda log: replace(log, u=np.concatenate([log.u[:1]] * 3 + [log.u[:-3]])), "late_output", "3 samples late"),
     (lambda log: replace(log, u=np.concatenate([log.u[3:]] + [log.u[-1:]] * 3)), "early_output", "3 samples before"),
+    (lambda log: replace(log, u=np.stack([log.u[:, 0], np.roll(log.u[:, 1], 2)], 1)), "late_output", "u_T_V 2 samples"),
     (lambda log: replace(log, u=log.u * [1.0, -1.0]), "output_sign", "u_T_V with its sign turned"),
     (lambda log: replace(log, y=log.y * [1.0, -1.0]), "input_sign", "azimuth angle"),
     (lambda log: replace(log, u=log.u * 1000.0), "output_unit", "1000 times"),
