@@ -9,7 +9,8 @@ from diagnosis.decide.columns import COLUMNS_ROWS
 from records.errors import BadInput
 from tests.diagnosis.arm import arm, arm_log
 from tests.replay.firmware_flights import own, plant, rows_of
-from twinlaw.workflows.identify.columns import asked_for_columns, asked_for_ranges, demand_columns, where_most_moves
+from twinlaw.workflows.columns import demand_columns, where_most_moves
+from twinlaw.workflows.identify.columns import asked_for_columns, asked_for_ranges
 from twinlaw.workflows.identify.inputs import Inputs, looked_at
 
 

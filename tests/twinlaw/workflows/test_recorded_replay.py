@@ -1,20 +1,26 @@
 """What `verify --log` says of a log whose inputs are not the law's at their rows."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from logcheck.integrity import Integrity
 from records.errors import BadInput
 from records.log import RunLog, save_log
 from tests.law_tables import ce150_table
-from tests.replay.firmware_flights import default_flight, own, plant, rows_of
+from tests.replay.firmware_flights import Wrapped, default_flight, flown, own, plant, rows_of
 from tests.soak import sampled
 from twinlaw.workflows.chain import verifying
 from twinlaw.workflows.chain.verifying import recorded_replay
+from verification.host_law import host_law
+
+Array = NDArray[np.float64]
 
 pytestmark = pytest.mark.usefixtures("one_change")
 
@@ -23,11 +29,65 @@ def test_a_log_is_compared_and_what_explains_its_difference_is_said(tmp_path: Pa
     save_log(tmp_path / "own.csv", own())
     replay, said = recorded_replay(tmp_path / "own.csv", ce150_table(), plant())
     assert (replay.sent is not None, said) == (True, ())
-    late = replace(own(), u=np.concatenate([own().u[:1], own().u[:-1]]))
-    save_log(tmp_path / "late.csv", late)
+    for name, sent, told in (("both", late, "its output"), ("one", late_main, "u_M_V")):
+        save_log(tmp_path / f"{name}.csv", flown(Wrapped(host_law(ce150_table()), after=sent)))
+        replay, said = recorded_replay(tmp_path / f"{name}.csv", ce150_table(), plant())
+        assert replay.sent is not None
+        assert said == (f"{name}.csv: the firmware sent {told} one sample late, or the log has it so",)
+
+
+@cache
+def flown_late() -> RunLog:
+    """The lively flight of such a firmware."""
+    return flown(Wrapped(host_law(ce150_table()), after=late))
+
+
+def late(k: int, sent: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """A firmware whose answers reach the rig a sample late."""
+    return sent[max(0, k - 1)]
+
+
+def late_main(k: int, sent: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """The same of the main rotor alone."""
+    return sent[max(0, k - 1)][0], sent[k][1]
+
+
+LOGGED = [
+    ("both_late", lambda log: replace(log, u=shifted(log.u, [0, 1], 1)), "u_M_V and u_T_V stand one row late"),
+    ("main_late", lambda log: replace(log, u=shifted(log.u, [0], 1)), "u_M_V stands one row late"),
+    ("tail_early", lambda log: replace(log, u=shifted(log.u, [1], -1)), "would have sent u_T_V one sample before"),
+    ("psi_early", lambda log: replace(log, y=shifted(log.y, [0], -1)), "psi_rad stands one row early"),
+    ("phi_late", lambda log: replace(log, y=shifted(log.y, [1], 1)), "the azimuth that the log holds one sample too"),
+    ("tail_turned", lambda log: replace(log, u=log.u * [1.0, -1.0]), "u_T_V has the wrong sign"),
+    ("exchanged", lambda log: replace(log, y=log.y[:, ::-1].copy()), "psi_rad and phi_rad stand in each other's place"),
+]
+
+
+@pytest.mark.parametrize(("name", "wrong", "told"), sampled(LOGGED, keep=[LOGGED[n] for n in (1, 4, 6)]))
+def test_a_log_whose_columns_the_plant_denies_fails_no_verification(
+    name: str, wrong: Callable[[RunLog], RunLog], told: str, tmp_path: Path
+) -> None:
+    """Truth: the firmware did as its table says, and the log holds columns in other rows, with another sign, or in another's place."""
+    save_log(tmp_path / f"{name}.csv", wrong(own()))
+    with pytest.raises(BadInput, match=told):
+        recorded_replay(tmp_path / f"{name}.csv", ce150_table(), plant())
+
+
+def shifted(values: Array, columns: Sequence[int], rows: int) -> Array:
+    """The same with some columns so many rows late."""
+    moved, source = values.copy(), np.clip(np.arange(len(values)) - rows, 0, len(values) - 1)
+    moved[:, columns] = values[source][:, columns]
+    return moved
+
+
+def test_references_that_the_log_holds_too_late_fail_no_verification(tmp_path: Path) -> None:
+    """Truth: the azimuth's reference is logged two rows behind that in which the law had it, which no firmware can bring about."""
+    rows = np.clip(np.arange(len(own().t_s)) - 2, 0, None)
+    moved = {**own().extra, "phi_ref_rad": own().extra["phi_ref_rad"][rows]}
+    save_log(tmp_path / "late.csv", replace(own(), extra=moved))
     replay, said = recorded_replay(tmp_path / "late.csv", ce150_table(), plant())
-    assert replay.sent is not None
-    assert said[0].startswith("late.csv: the firmware sent its output one sample late")
+    assert replay.sent is None
+    assert "used the azimuth reference that the log holds 2 samples too late" in said[0]
 
 
 def test_a_last_row_that_was_written_in_part_is_told_and_the_others_are_compared(tmp_path: Path) -> None:
@@ -114,7 +174,7 @@ def test_rows_that_lack_a_command_and_a_reading_too_are_not_laid_on_the_firmware
     replay, said = recorded_replay(tmp_path / "lost.csv", ce150_table(), plant())
     assert replay.sent is None
     assert "the firmware is cleared" in said[0] or "in all others every bit agrees" in said[0]
-    save_log(tmp_path / "late.csv", replace(own(), u=np.concatenate([u[:1], u[:-1]]), y=y))
+    save_log(tmp_path / "late.csv", replace(flown_late(), u=np.where(lost[:, None], 0.0, flown_late().u)))
     replay, said = recorded_replay(tmp_path / "late.csv", ce150_table(), plant())
     assert replay.sent is not None
     assert "the firmware sent its output one sample late" in said[0]
@@ -122,9 +182,9 @@ def test_rows_that_lack_a_command_and_a_reading_too_are_not_laid_on_the_firmware
 
 def test_a_firmware_at_fault_behind_commands_of_zero_is_still_told(tmp_path: Path) -> None:
     """Truth: the law's output came one sample late, and the log lacks some of it."""
-    u = np.concatenate([own().u[:1], own().u[:-1]])
+    u = flown_late().u.copy()
     u[np.random.default_rng(4).random(len(u)) < 0.015, 0] = 0.0
-    save_log(tmp_path / "late.csv", replace(own(), u=u))
+    save_log(tmp_path / "late.csv", replace(flown_late(), u=u))
     replay, said = recorded_replay(tmp_path / "late.csv", ce150_table(), plant())
     assert replay.sent is not None
     assert said[0].startswith("late.csv: the firmware sent its output one sample late")

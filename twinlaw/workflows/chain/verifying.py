@@ -9,12 +9,13 @@ from codegen.law import generate_law
 from codegen.law_equations import state_words
 from codegen.scales import fastest, room, widest_reference
 from design.structure import stops
-from logcheck.integrity import OTHER_NUMBERS, as_read, as_sent, examine
+from logcheck.integrity import OTHER_NUMBERS, Integrity, as_read, as_sent, examine
 from logcheck.integrity import demand as demand_log
 from records.board import STM32G071
 from records.errors import VerificationFailed
 from records.log import RunLog
 from records.loops import LOOPS, Loop
+from records.reasons import DOUBTS
 from records.table import ControllerTable
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
 from replay.firmware import CLEARED, INPUT_UNKNOWN, FirmwareReplay, demand_causal
@@ -31,6 +32,7 @@ from sim.bind import BoundPlant
 from sim.columns import log_columns
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
+from twinlaw.workflows.columns import demand_columns_of
 from twinlaw.workflows.reading import load_known_log
 from verification.equality import BatchStepper, compare
 from verification.host_law import HostLaw
@@ -199,6 +201,7 @@ def _compared(
     """
     if replay.sent is None or not has_replayable_columns(log, table):
         return replay, None
+    as_logged, found = log, None
     begins, unread, whole = None, False, None
     if log.columns == log_columns(bound.model):
         found = examine([log], bound, names=[path.stem])
@@ -219,9 +222,22 @@ def _compared(
         said = "with the readings that the law had in place of those that were left out, every bit agrees"
         return _not_compared(replay, path, said)
     demand_causal(path, replayed)
-    if replayed.cause not in CLEARED and not _lacks_its_beginning(replayed):
-        return replay, None if replayed.cause is None else f"{path.name}: {replayed.sentence}"
-    return _not_compared(replay, path, replayed.sentence)
+    if replayed.cause in CLEARED or _lacks_its_beginning(replayed):
+        return _not_compared(replay, path, replayed.sentence)
+    if replayed.cause is None:
+        return replay, None
+    told = (f"{path.name}: {replayed.sentence}", *_columns_in_doubt(as_logged, found, bound))
+    return replay, "; ".join(told)
+
+
+def _columns_in_doubt(log: RunLog, looked: Integrity | None, bound: BoundPlant) -> tuple[str, ...]:
+    """What the plant says of the columns of a log that its law does not follow: before a firmware is at fault the log is asked, as for a
+    diagnosis, whether its columns are what they are called, in the rows of their time. Raises BadInput where they are not; of another
+    plant's log, which was not looked at, there is nothing to say."""
+    if looked is None:
+        return ()
+    with stage("asking whether the columns are what they are called"):
+        return tuple(note.said for note in demand_columns_of(bound, log, looked) if note.kind in DOUBTS and note.said)
 
 
 def _not_compared(replay: Replay, path: Path, said: str | None) -> tuple[Replay, str]:
