@@ -1,7 +1,8 @@
 """Readings of an axis that leap away for a row, by a few steps of its encoder, and back on its way: no mass moves so.
 
 An edge that was counted twice, or a word on a bus that was read amid its change. What leaps farther than any motion is a glitch whatever
-column it is in; these are small, and told by how even the way of the axis is on both sides.
+column it is in; these are small, and told by how even the way of the axis is on both sides. Where they are many, few have an even way
+beside them: then that they come independently of one another tells them, as rows of any motion or shaking come together.
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,6 +26,8 @@ def spike_findings(log: RunLog, name: str, column: str, step: float) -> Iterator
     moves = np.abs(np.diff(values))
     least = max(float(np.min(moves, initial=np.inf, where=moves > 0.0)), step)
     spikes = _single(clocks, values, least)
+    if not spikes.size:
+        spikes = _scattered(values, least)
     if spikes.size < max(thresholds.LEAST_SPIKES, thresholds.LEAST_SPIKES_SHARE * len(values)):
         return
     spikes = np.concatenate([spikes, _outermost(clocks, values, least)])
@@ -54,6 +57,39 @@ def _single(clocks: Array, values: Array, least: float) -> Indices:
     between = np.diff(row[clear], prepend=-np.inf, append=np.inf)
     near = np.minimum(between[:-1], between[1:]) <= thresholds.SHAKES_ROWS
     return row[clear] if near.sum() <= thresholds.MOST_NEAR * near.size else row[:0]
+
+
+def _scattered(values: Array, least: float) -> Indices:
+    """Rows in many that are off the way of those around, and off the line through the others beside; none unless they come one
+    independently of the other: as many have another so near as chance makes it of so large a share."""
+    none: Indices = np.zeros(0, np.int64)
+    if len(values) <= 2 * thresholds.SCATTER_AROUND:
+        return none
+    off = np.abs(values - _way(values, thresholds.SCATTER_AROUND))
+    usual = thresholds.SPIKE_FACTOR * float(np.percentile(off, thresholds.SCATTER_PERCENT))
+    bound = max(thresholds.SPIKE_STEPS * least, usual)
+    row, far = np.arange(len(values)), off > bound
+    if not far.any() or far.all():
+        return none
+    off = np.where(far, np.abs(values - np.interp(row, row[~far], values[~far])), off)
+    far &= off > bound
+    share, unsure = far.mean(), np.sum((off > 0.5 * bound) & ~far)
+    if not thresholds.LEAST_SCATTERED <= share <= thresholds.MOST_SCATTERED:
+        return none
+    if unsure > thresholds.MOST_HALF_OFF * far.sum():
+        return none
+    between = np.diff(row[far], prepend=-np.inf, append=np.inf)
+    near = np.mean(np.minimum(between[:-1], between[1:]) <= thresholds.SHAKES_ROWS)
+    by_chance = 1.0 - (1.0 - share) ** (2 * thresholds.SHAKES_ROWS)
+    return row[far] if abs(near - by_chance) <= thresholds.NEAR_BY_CHANCE else none
+
+
+def _way(values: Array, rows: int) -> Array:
+    """Where those up to so many rows on either side put each row: the median of them, each brought there by the median of their moves."""
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, rows, mode="edge"), 2 * rows + 1)
+    moves = np.median(np.diff(windows, axis=1), axis=1)
+    way: Array = np.median(windows - moves[:, np.newaxis] * np.arange(-rows, rows + 1), axis=1)
+    return way
 
 
 def _outermost(clocks: Array, values: Array, least: float) -> Indices:

@@ -209,6 +209,16 @@ MOST_OFF_ARE_SPIKES = Limit(
 )
 SHAKES_ROWS = Count(3, "rows", "from one to the next at most, at a third of the sampling rate and above")
 MOST_NEAR = Limit(0.6, "share of the rows found", "that are so near to another: 0.4 by chance with 8 % of spikes")
+SCATTER_AROUND = Count(4, "rows on either side", "that tell the way of an axis where many rows are off it")
+SCATTER_PERCENT = Limit(60.0, "percentile", "of how far rows are off that, whatever spikes in one of four add to it")
+LEAST_SCATTERED = Limit(0.05, "share of rows", "fewer have an even way beside them")
+MOST_SCATTERED = Limit(0.25, "share of rows", "with more, four of nine are off too often")
+MOST_HALF_OFF = Limit(0.25, "rows off by half as far", "for each row found: 0.39 and more in published recordings")
+NEAR_BY_CHANCE = Limit(
+    0.12,
+    "share of the rows found",
+    "more or less than chance gives of those so near to another: 0.18 and more in published recordings",
+)
 LEAST_SPIKES = Count(3, "readings", "fewer in a log are chance")
 LEAST_SPIKES_SHARE = Limit(0.001, "share of rows", "a carriage between two blows: three rows of 24 841")
 SPIKE_ROWS = Count(5, "rows", "in which spikes come together by chance, once some are found")

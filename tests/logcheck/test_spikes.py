@@ -27,7 +27,7 @@ def spoilt(psi_rad: np.ndarray, share: float, steps: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("steps", [4, 5, 25])
-@pytest.mark.parametrize("share", [0.004, 0.03, 0.05])
+@pytest.mark.parametrize("share", [0.004, 0.03, 0.05, 0.12, 0.2])
 def test_spikes_are_left_out_also_in_rows_beside_one_another(share: float, steps: int) -> None:
     read = spoilt(rounded(SWING), share, steps)
     found, off = spike_rows(read), np.abs(read - rounded(SWING)) > 0.5 * STEP_RAD
@@ -65,6 +65,8 @@ def honest() -> dict[str, np.ndarray]:
         "noise": rounded(SWING + rng.normal(0.0, 3.0 * STEP_RAD, 2000)),
         "shaking": rounded(SWING + burst),
         "hunting": rounded(SWING) + STEP_RAD * (rng.random(2000) < 0.05),
+        "heavy": rounded(SWING + 2.0 * STEP_RAD * rng.standard_t(3.0, 2000)),
+        "clusters": rounded(SWING) + 5.0 * STEP_RAD * (rng.random(2000) < 0.6) * (row % 100 < 20),
         "two": rounded(SWING) + 5.0 * STEP_RAD * np.isin(row, (700, 1500)),
     }
 
