@@ -14,7 +14,8 @@ from records.logs.unwritten import LEAP, beside_rows, leap_of
 
 
 def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
-    """Rows in which an output reads zero though it is elsewhere just before and just after."""
+    """Rows in which an output reads zero though it is elsewhere just before and just after; of one that does, those at either end of
+    the log, which are elsewhere on one side only."""
     values = log.column(column)
     zero = values == 0.0
     others = np.flatnonzero(np.isfinite(values) & ~zero)
@@ -25,18 +26,17 @@ def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
     if not np.isfinite(least):
         return
     leap = leap_of(moves, least)
-    _, before, after = beside_rows(others, len(values))
+    place, before, after = beside_rows(others, len(values))
+    inside: Rows = (place > 0) & (place < others.size)
     near = np.minimum(np.abs(values[before]), np.abs(values[after]))
-    near[: others[0]] = 0.0
-    near[others[-1] :] = 0.0
-    gap_s = log.t_s[after] - log.t_s[before]
+    gap_s = np.where(inside, log.t_s[after] - log.t_s[before], np.abs(log.t_s - log.t_s[before]))
     near[gap_s > thresholds.DEAD_S] = 0.0  # a stand, which is told with its times
     clear: Rows = zero & (near > leap)
-    if not clear.any():
+    if not (clear & inside).any():
         return
     # Where zero is written for no reading, one that is merely beside zero is none either.
-    unread: Rows = zero & (near > thresholds.BESIDE_ZERO_STEPS * least)
-    a_step_beside: Rows = zero & (near > 0.0) & ~unread
+    unread: Rows = clear | (zero & inside & (near > thresholds.BESIDE_ZERO_STEPS * least))
+    a_step_beside: Rows = zero & inside & (near > 0.0) & ~unread
     if a_step_beside.sum() <= unread.sum():  # more are an axis about zero, fewer cost nothing where they were read
         unread = unread | a_step_beside
     at, count = log.t_s[unread], int(unread.sum())

@@ -74,6 +74,22 @@ def test_readings_of_zero_now_and_then_are_left_out_and_those_of_an_axis_that_pa
     assert list(zero_findings(log, "a", "psi_rad", STEP_RAD)) == []
 
 
+@pytest.mark.parametrize("ends", [(0,), (-1,), (0, 1, -2, -1)])
+def test_readings_of_zero_at_the_ends_of_a_log_are_left_out_where_others_are(ends: tuple[int, ...]) -> None:
+    # Truth: a sensor far from zero reads it in single rows amid the log, and in its first or last rows.
+    log = log_of()
+    far = replace(log, y=np.add(log.y, (1.0, 0.0)))
+    y = far.y.copy()
+    y[ends, 0] = 0.0
+    assert (
+        list(zero_findings(replace(far, y=y), "a", "psi_rad", STEP_RAD)) == []
+    )  # alone they may be where the axis was
+    y[[700, 1200], 0] = 0.0
+    (found,) = zero_findings(replace(far, y=y), "a", "psi_rad", STEP_RAD)
+    assert found.excluded is not None
+    assert np.array_equal(found.excluded, y[:, 0] == 0.0)
+
+
 def test_an_axis_that_often_rests_beside_zero_keeps_its_zeros_where_a_few_readings_are_lost() -> None:
     # Truth: an axis hunts by one count about zero, 0 in every second row, and two of its readings on a step of 0.5 rad were lost.
     log = log_of()
