@@ -43,7 +43,7 @@ def read_sidecar(path: Path) -> Mapping[str, Any]:
     """What stands beside the log at `path`; a log that is not there at all is told by its own name."""
     if not path.exists():
         raise BadInput("run log", str(path), "No such file or directory", "a readable file", "check the path")
-    if not path.name:  # `.` and `/` have no sidecar beside them
+    if path.is_dir():
         raise BadInput("run log", str(path), "a folder", "a file NAME.csv", "name the log")
     beside = "a log is NAME.csv with NAME.toml beside it; `twinlaw import` makes both of a recording"
     return read_toml(path.with_suffix(".toml"), "sidecar of the run log", beside)

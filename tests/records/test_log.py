@@ -6,7 +6,7 @@ import pytest
 from records.errors import BadInput
 from records.log import RunLog, csv_text, load_log, save_log
 from records.logs.columns import LogColumns
-from records.logs.sidecar import plant_of_log
+from records.logs.sidecar import plant_of_log, read_sidecar
 
 COLUMNS = LogColumns(
     "ce150", ("u_M_V", "u_T_V"), ("psi_rad", "phi_rad"), ("omega_M_rad_s", "psi_ref_rad"), ("elevation", "azimuth")
@@ -202,6 +202,13 @@ def test_a_wrong_sidecar_is_refused_with_its_key(files, old, new, message):
 def test_a_log_without_its_sidecar_is_refused(files):
     with pytest.raises(BadInput, match=r"a\.toml: sidecar of the run log: got No such file"):
         files(sidecar=None)
+
+
+@pytest.mark.parametrize("name", [".", "logs"])
+def test_a_folder_in_a_log_s_place_is_told_as_one(tmp_path, name):
+    (tmp_path / "logs").mkdir()
+    with pytest.raises(BadInput, match=r"run log: got a folder, expected a file NAME\.csv; name the log"):
+        read_sidecar(tmp_path / name)
 
 
 def test_where_the_sidecar_cannot_be_written_no_log_stays_behind(tmp_path):
