@@ -7,7 +7,7 @@ from logcheck import thresholds
 from logcheck.finding import Array
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 
 def states_along(log: RunLog, bound: BoundPlant) -> Array:
@@ -15,7 +15,9 @@ def states_along(log: RunLog, bound: BoundPlant) -> Array:
     before = max(1, round(thresholds.RUN_UP_S / log.sample_period_s))
     u = np.concatenate([np.repeat(log.u[:1], before, axis=0), log.u])
     with np.errstate(all="ignore"):
-        runs = simulate(bound, np.arange(len(u)) * log.sample_period_s, np.zeros(len(bound.model.states)), u, keep="x")
+        runs = simulate(
+            bound, np.arange(len(u)) * log.sample_period_s, np.zeros(len(bound.model.states)), u, Conditions(keep="x")
+        )
     states: Array = np.nan_to_num(np.asarray(runs.x))[before:]
     return states
 
@@ -33,9 +35,7 @@ def read_ahead(
             times,
             x0,
             u,
-            resolution=np.zeros(len(bound.model.outputs)),
-            locked=tuple(log.locked),
-            keep="y",
+            Conditions(resolution=np.zeros(len(bound.model.outputs)), locked=tuple(log.locked), keep="y"),
         )
     return None if runs.y is None else np.asarray(runs.y[:, -1, list(bound.model.outputs).index(column)])
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sim.bind import BoundPlant
-from sim.simulate import Drive, simulate
+from sim.simulate import Conditions, Drive, simulate
 
 ORDER = 4  # of the Runge-Kutta method
 Array = NDArray[np.float64]
@@ -43,7 +43,9 @@ def step_error(
     """
 
     def run(count: int) -> Array:
-        y = simulate(bound, t_s, x0, drive, reference=reference, resolution=exact, substeps=count, keep="y").y
+        y = simulate(
+            bound, t_s, x0, drive, Conditions(reference=reference, resolution=exact, substeps=count, keep="y")
+        ).y
         assert y is not None
         return y
 

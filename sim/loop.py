@@ -17,7 +17,7 @@ from sim.bind import BoundPlant
 from sim.columns import log_columns, reference_name
 from sim.manoeuvres import Manoeuvre
 from sim.runs.stepped import SteppedPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from sim.substeps import fastest_rad_s, steps_a_stretch
 from sim.wiring import Wiring
 
@@ -93,7 +93,11 @@ def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, 
     """
     count = steps_a_sample(bound, manoeuvre) if substeps is None else substeps
     runs = simulate(
-        bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, substeps=count, keep="uyx"
+        bound,
+        manoeuvre.t_s,
+        manoeuvre.x0,
+        table,
+        Conditions(reference=manoeuvre.reference_rad, substeps=count, keep="uyx"),
     )
     assert runs.u is not None
     assert runs.y is not None

@@ -9,7 +9,7 @@ from diagnosis.baselines.windows import Array, Windows, errors, windows_of
 from records.diagnosis import Diagnosis, PlaceShare, Unknown
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 RESIDUAL_ALARM = 2.0  # residuals this many times those of the plant itself are a gap
 
@@ -32,7 +32,7 @@ def by_residual_size(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis:
 
 def _own(bound: BoundPlant, windows: Windows) -> Windows:
     """The windows as the nominal plant would have filled them, with starts as wrong as an encoder's step makes them."""
-    y = np.asarray(simulate(bound, windows.t_s, windows.x0, np.ascontiguousarray(windows.u), keep="y").y)
+    y = np.asarray(simulate(bound, windows.t_s, windows.x0, np.ascontiguousarray(windows.u), Conditions(keep="y")).y)
     return replace(windows, y=y)
 
 

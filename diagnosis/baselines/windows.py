@@ -10,7 +10,7 @@ from scipy.signal import savgol_filter
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.model import Model
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 FREE_RUN_S = 1.0
 SMOOTHED_ROWS = 11  # odd; over them an angle is taken for a parabola
@@ -40,7 +40,7 @@ def windows_of(bound: BoundPlant, logs: Sequence[RunLog]) -> Windows:
 def errors(bound: BoundPlant, windows: Windows, p: Array | None = None) -> Array:
     """Prediction less measurement, shape (windows, n, outputs); 0 where nothing was measured."""
     t_s, u = windows.t_s, np.ascontiguousarray(windows.u)
-    predicted = simulate(bound, t_s, windows.x0, u, p=p, resolution=np.zeros(windows.y.shape[2]), keep="y")
+    predicted = simulate(bound, t_s, windows.x0, u, Conditions(p=p, resolution=np.zeros(windows.y.shape[2]), keep="y"))
     return np.nan_to_num(np.asarray(predicted.y) - windows.y)
 
 
@@ -52,8 +52,7 @@ def states_of(bound: BoundPlant, log: RunLog) -> Array:
         log.t_s,
         np.zeros(len(model.states)),
         log.u,
-        locked=tuple(axis.name for axis in model.axes if axis.position is not None),
-        keep="x",
+        Conditions(locked=tuple(axis.name for axis in model.axes if axis.position is not None), keep="x"),
     )
     x = np.array(held.x)
     for position, velocity, output in measured_axes(model):

@@ -22,7 +22,7 @@ from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.equilibrium import equilibrium
 from sim.runs.stepped import SteppedPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 Array = NDArray[np.float64]
 NAMES = ("K_M", "J_E", "tau_gE", "b_vE", "b_cE", "K_T", "J_A", "b_vA", "b_cA", "K_A")
@@ -119,7 +119,7 @@ def _residual(work: BenchFlight) -> Callable[[Array], Array]:
     def residual(relative: Array) -> Array:
         p = work.bound.p.copy()
         p[places] = np.maximum(relative, 1e-3) * work.start
-        run = simulate(work.bound, work.log.t_s, work.x0, work.log.u, p=p, resolution=[0.0, 0.0], keep="y")
+        run = simulate(work.bound, work.log.t_s, work.x0, work.log.u, Conditions(p=p, resolution=[0.0, 0.0], keep="y"))
         assert run.y is not None
         return np.asarray((run.y - work.log.y).ravel())
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from identification.fit.problem import Problem
 from identification.runs.prediction import predicted
 from identification.runs.run import Run, coefficient_names, known_names
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 Array = NDArray[np.float64]
 DEGREES = 180.0 / np.pi
@@ -51,7 +51,7 @@ def _at_once(run: Run, names: Sequence[str], thetas: Array) -> Array:
     if run.carried is not None:
         x0[[model.states.index(state) for state in run.carried.bound.model.states]] = run.carried.x0
     exact = np.zeros(len(model.outputs))
-    y = simulate(run.bound, run.t_s, x0, run.u, p=p, resolution=exact, keep="y").y
+    y = simulate(run.bound, run.t_s, x0, run.u, Conditions(p=p, resolution=exact, keep="y")).y
     assert y is not None
     return np.asarray(y.reshape(len(thetas), -1)[:, run.select])
 

@@ -17,7 +17,7 @@ from logcheck.stands.dead import amount
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.model import Axis
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 
 def locked_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
@@ -54,7 +54,7 @@ def _would_move(log: RunLog, bound: BoundPlant, axis: Axis, angle: float) -> flo
 
 
 def _states(bound: BoundPlant, t_s: Array, x0: Array, u: Array, locked: list[str]) -> Array:
-    run = simulate(bound, t_s, x0, u, locked=tuple(locked), keep="x")
+    run = simulate(bound, t_s, x0, u, Conditions(locked=tuple(locked), keep="x"))
     assert run.x is not None
     return np.asarray(run.x)
 

@@ -16,7 +16,7 @@ from sim.bind import BoundPlant
 from sim.halving import step_error
 from sim.loop import Controller
 from sim.manoeuvres import Manoeuvre, flight
-from sim.simulate import Runs, simulate
+from sim.simulate import Conditions, Runs, simulate
 
 Array = NDArray[np.float64]
 
@@ -88,7 +88,9 @@ def run(
 
 
 def _fly(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, p: Array, keep: str) -> Runs:
-    return simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, p=p, keep=keep)
+    return simulate(
+        bound, manoeuvre.t_s, manoeuvre.x0, table, Conditions(reference=manoeuvre.reference_rad, p=p, keep=keep)
+    )
 
 
 def _simulated_s(manoeuvre: Manoeuvre, p: Array) -> float:
@@ -137,10 +139,9 @@ def step_accuracy(bound: BoundPlant, table: ControllerTable) -> StepAccuracy:
             whole.t_s,
             whole.x0,
             table,
-            reference=whole.reference_rad,
-            resolution=np.zeros(len(bound.model.outputs)),
-            substeps=count,
-            keep="y",
+            Conditions(
+                reference=whole.reference_rad, resolution=np.zeros(len(bound.model.outputs)), substeps=count, keep="y"
+            ),
         ).y
         for count in (1, FINE_SUBSTEPS)
     )
@@ -152,7 +153,7 @@ def step_accuracy(bound: BoundPlant, table: ControllerTable) -> StepAccuracy:
 def after_take_off(bound: BoundPlant, table: ControllerTable, whole: Manoeuvre) -> Manoeuvre:
     """The flight from a step in the air on, from the state in which it gets there."""
     start = int(np.argmax(whole.t_s >= 9.0))
-    flown = simulate(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad, keep="x").x
+    flown = simulate(bound, whole.t_s, whole.x0, table, Conditions(reference=whole.reference_rad, keep="x")).x
     assert flown is not None
     return Manoeuvre("steps", whole.t_s[start:] - whole.t_s[start], whole.reference_rad[start:], flown[start])
 

@@ -53,7 +53,9 @@ Drive = ControllerTable | CController | Array
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Under what a run is made, beside its start and what drives it; each as `simulate` has it."""
+    """Under what a run is made, beside its start and what drives it: `reference` (n, outputs) of a controller, parameters `p` (k,) or
+    (runs, k), by default the plant's own, encoder steps `resolution` (outputs,), by default the plant file's, where 0 leaves an output as
+    it is, `substeps` of RK4 a sample, axes `locked` mechanically, and which of "uyx" to `keep`."""
 
     reference: ArrayLike | None = None
     p: ArrayLike | None = None
@@ -62,6 +64,9 @@ class Conditions:
     noise: Noise | None = None
     locked: tuple[str, ...] = ()
     keep: str = "uyx"
+
+
+PLAIN = Conditions()
 
 
 def run_equations(

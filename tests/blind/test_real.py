@@ -32,7 +32,7 @@ from sim.added_effects import Sizes, combined, library, with_effects, with_value
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.effects import effects_for
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.recorded import dataset_folder
 from tests.soak import SOAK, sampled
 
@@ -108,7 +108,11 @@ def test_without_effects_it_is_the_projects_plant(plant: RealPlant) -> None:
         rows = slice(first, first + 100)
         start = record.apparent[first][order]
         run = simulate(
-            bound, record.t_s[rows], start, record.u_V[rows], resolution=[0.0] * len(plant.outputs), substeps=4
+            bound,
+            record.t_s[rows],
+            start,
+            record.u_V[rows],
+            Conditions(resolution=[0.0] * len(plant.outputs), substeps=4),
         )
         assert (np.abs(run.y - record.exact_rad[rows]) < 0.01 * largest(plant)).all()
     assert np.ptp(record.exact_rad, axis=0).min() > 0.2 * min(plant.reach)
@@ -345,6 +349,8 @@ def test_the_librarys_formula_with_a_truths_parameters_flies_what_the_rig_flew(p
         x0 = start if effect.sensor else record.apparent[0][order]
         left = []
         for model in (bound, flying(together, bound, found)):
-            run = simulate(model, record.t_s, x0, record.u_V, resolution=[0.0] * len(plant.outputs), substeps=4)
+            run = simulate(
+                model, record.t_s, x0, record.u_V, Conditions(resolution=[0.0] * len(plant.outputs), substeps=4)
+            )
             left.append(np.std(run.y[:, 0] - record.exact_rad[:, 0]))
         assert left[1] < left[0] / 5.0, effect.name

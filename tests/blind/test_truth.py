@@ -14,7 +14,7 @@ from blind.simulation.record import Record
 from blind.simulation.rest import rest
 from records.plant import load_plant
 from sim.bind import bind
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.blind.conftest import PLANT, calm_flight, lively_flight
 
 STATES = ("psi_rad", "psi_dot_rad_s", "phi_rad", "phi_dot_rad_s", "omega_M_rad_s", "omega_T_rad_s")
@@ -58,7 +58,7 @@ def test_without_effects_it_is_the_projects_plant_far_below_one_encoder_count(fl
         rows = slice(first, first + 100)
         x0 = np.empty(6)
         x0[order] = record.apparent[first]
-        runs = simulate(bound, record.t_s[rows], x0, record.u_V[rows], resolution=[0.0, 0.0], substeps=4)
+        runs = simulate(bound, record.t_s[rows], x0, record.u_V[rows], Conditions(resolution=[0.0, 0.0], substeps=4))
         misses.append(runs.y - record.exact_rad[rows])
     rms = np.sqrt(np.mean(np.concatenate(misses) ** 2, axis=0))
     assert np.all(rms < 1.5e-4), rms

@@ -7,7 +7,7 @@ from controllers.equations.exact import Doubles
 from controllers.equations.frame import numbers_of
 from controllers.fuzzy import Fuzzy
 from controllers.fuzzy_sets import AZIMUTH, ELEVATION, ERROR_LABELS, SHOULDER_FOOT, Wording
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.controllers.rows import ce150, designed
 from verification.comparison.manoeuvres import FIGURES
 from verification.comparison.measures import merit
@@ -90,7 +90,7 @@ def test_the_elevation_settles_across_the_horizontal() -> None:
     row, table = designed("fuzzy")
     plan = FIGURES["fig-13"].manoeuvre(ce150(), 0.01)
     law = FlownLaw(row.generate(table))
-    runs = simulate(ce150(), plan.t_s, plan.x0, law.controller(plan.t_s.size), reference=plan.reference_rad)
+    runs = simulate(ce150(), plan.t_s, plan.x0, law.controller(plan.t_s.size), Conditions(reference=plan.reference_rad))
     found = merit(plan.t_s, plan.reference_rad, runs.y, runs.u, 0)
     assert found.settling_s is not None
     assert found.settling_s < 4.0

@@ -14,7 +14,7 @@ from design.loop import PlantPolynomials, closed_loop_poles, plant_polynomials
 from records.table import changed_axis
 from sim.loop import fly
 from sim.manoeuvres import Leg, Manoeuvre, hop, manoeuvre
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.controllers.rows import ce150, designed
 from tests.plants import bound
 from verification.comparison.conditions import spread
@@ -177,6 +177,6 @@ def _merits(table: Any, name: str, plan: Manoeuvre, plants: Any) -> list[Merit]:
     found = []
     for p in plants:
         drive = law.controller(plan.t_s.size)
-        runs = simulate(ce150(), plan.t_s, plan.x0, drive, reference=plan.reference_rad, p=p)
+        runs = simulate(ce150(), plan.t_s, plan.x0, drive, Conditions(reference=plan.reference_rad, p=p))
         found.append(merit(plan.t_s, plan.reference_rad, runs.y, runs.u, 0))
     return found

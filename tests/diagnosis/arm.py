@@ -15,7 +15,7 @@ from records.log import RunLog
 from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-from sim.simulate import Noise, simulate
+from sim.simulate import Conditions, Noise, simulate
 from tests.diagnosis.nominal import nominal_fit
 from tests.plants import bound
 from tests.soak import SOAK
@@ -65,7 +65,7 @@ def arm_log(
     rig = with_effects(plain, {**shared, **effects}) if effects else plain
     process = np.zeros(len(rig.model.states))
     process[1] = 0.01
-    run = simulate(rig, t_s, np.zeros(2), u[:, None], noise=Noise(seed, process_sd=process), keep="y")
+    run = simulate(rig, t_s, np.zeros(2), u[:, None], Conditions(noise=Noise(seed, process_sd=process), keep="y"))
     y = np.asarray(run.y).reshape(len(t_s), -1)
     return RunLog(log_columns(arm().model), PERIOD_S, "open", t_s, u[:, None], y)
 

@@ -15,7 +15,7 @@ from records.plant import load_plant
 from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant, bind
 from sim.loop import closed_loop_log
-from sim.simulate import Noise, simulate
+from sim.simulate import Conditions, Noise, simulate
 from tests.diagnosis.arm import arm, arm_log
 from tests.plants import lively_table
 from tests.soak import SOAK
@@ -103,7 +103,7 @@ def fly(plant: BoundPlant) -> Fly:
             p[names.index(name)] = factor * plant.p[names.index(name)]
         x0 = np.array([470.0, *(0.0, 0.0), 150.0, *(0.0, 0.0)])
         noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3 * gusts, 0.0, 0.0, 1e-3 * gusts]) if air else None
-        run = simulate(rig, t_s, x0, table, reference=reference, p=p, noise=noise, keep="uy", locked=locked)
+        run = simulate(rig, t_s, x0, table, Conditions(reference=reference, p=p, noise=noise, keep="uy", locked=locked))
         manoeuvre = _Flown(t_s, reference)
         return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={}, locked=locked)  # type: ignore[arg-type]
 

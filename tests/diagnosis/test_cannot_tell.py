@@ -15,7 +15,7 @@ from sim.columns import log_columns
 from sim.equilibrium import equilibrium
 from sim.loop import closed_loop_log
 from sim.manoeuvres import Manoeuvre
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.diagnosis.arm import PERIOD_S, arm
 from tests.law_tables import ce150_table
 
@@ -25,7 +25,7 @@ T_S = 0.01 * np.arange(1500)
 def flown(plant: BoundPlant, reference: np.ndarray, locked: tuple[str, ...] = ()) -> RunLog:
     """The stated plant along a reference."""
     x0 = equilibrium(plant, 0.0).x0
-    run = simulate(plant, T_S, x0, ce150_table(), reference=reference, keep="uy", locked=locked)
+    run = simulate(plant, T_S, x0, ce150_table(), Conditions(reference=reference, keep="uy", locked=locked))
     assert run.u is not None
     assert run.y is not None
     log = closed_loop_log(plant, Manoeuvre("m", T_S, reference, x0), run.u, run.y, None)
@@ -45,7 +45,7 @@ def standing() -> Diagnosis:
     rest = equilibrium(arm(), 0.3)
     t_s = PERIOD_S * np.arange(1200)
     u = (rest.u0[0] + 0.003 * np.sin(t_s))[:, None]
-    y = np.asarray(simulate(arm(), t_s, rest.x0, u, keep="y").y).reshape(len(t_s), -1)
+    y = np.asarray(simulate(arm(), t_s, rest.x0, u, Conditions(keep="y")).y).reshape(len(t_s), -1)
     return diagnosed(arm(), RunLog(log_columns(arm().model), PERIOD_S, "open", t_s, u, y))
 
 

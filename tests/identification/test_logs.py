@@ -23,7 +23,7 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.loop import fly
 from sim.manoeuvres import Manoeuvre
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.identification.flights import cut, off
 from tests.own_plants import PLAIN
 from tests.soak import SOAK, sampled
@@ -152,7 +152,7 @@ def test_an_axis_that_was_locked_stands_still_at_its_readings(bound):
     t_s = np.arange(1000) * 0.01
     u = np.column_stack([5.3 + 0.1 * np.sign(np.sin(2.0 * t_s)), np.full(t_s.size, 2.0)])
     x0 = np.array([0.0, -0.5, 0.0, 0.0, 0.3, 0.0])
-    run = simulate(bound, t_s, x0, u, locked=("azimuth",))
+    run = simulate(bound, t_s, x0, u, Conditions(locked=("azimuth",)))
     log = RunLog(log_columns(bound.model), 0.01, "open", t_s, u, run.y, locked=("azimuth",))
     seen = run_of(bound, log, "log", np.inf)
     assert seen.channels == ("psi_rad",)

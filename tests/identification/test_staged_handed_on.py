@@ -15,7 +15,7 @@ from sim.bind import bind
 from sim.equilibrium import equilibrium
 from sim.loop import closed_loop_log
 from sim.manoeuvres import Manoeuvre
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 T_S = 0.01 * np.arange(500)
 
@@ -43,7 +43,7 @@ def flight_of(plant, table, moved):
         np.column_stack([0.3 * np.sin(1.3 * T_S), 0.5 * np.sin(0.9 * T_S)]) * np.minimum(1.0, T_S / 2.0)[:, None]
     )
     flight = Manoeuvre("m", T_S, reference, equilibrium(plant, 0.0).x0)
-    run = simulate(plant, T_S, flight.x0, table, reference=reference, p=p, keep="uy")
+    run = simulate(plant, T_S, flight.x0, table, Conditions(reference=reference, p=p, keep="uy"))
     return closed_loop_log(plant, flight, run.u, run.y, None)
 
 

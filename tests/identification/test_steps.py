@@ -18,7 +18,7 @@ from records.log import RunLog
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.soak import sampled
 
 NAMES = ("b", "d", "k")
@@ -37,7 +37,7 @@ def flown(truth):
     rng = np.random.default_rng(1)
     t_s = 0.02 * np.arange(1500)
     u = np.repeat(rng.uniform(-1.0, 1.0, 150), 10)[:, None]
-    y = simulate(truth, t_s, np.zeros(2), u, resolution=[0.0], substeps=100).y
+    y = simulate(truth, t_s, np.zeros(2), u, Conditions(resolution=[0.0], substeps=100)).y
     return RunLog(log_columns(truth.model), 0.02, "open", t_s, u, y + NOISE_rad * rng.standard_normal(y.shape))
 
 

@@ -15,7 +15,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.model import symbol
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests import plants
 from tests.identification.flights import cut
 from tests.own_plants import SUSPENSION, TANKS
@@ -119,7 +119,7 @@ def test_a_state_that_only_the_inputs_drive_starts_where_they_brought_it_also_wh
     rig = plants.bound("maglev_coil")
     t_s = 0.01 * np.arange(1000)
     u = np.repeat(np.random.default_rng(1).uniform(0.2, 0.8, 50), 20)[:, None]
-    y = np.asarray(simulate(rig, t_s, np.zeros(1), u, keep="y").y).reshape(-1, 1)
+    y = np.asarray(simulate(rig, t_s, np.zeros(1), u, Conditions(keep="y")).y).reshape(-1, 1)
     run = run_of(rig, RunLog(log_columns(rig.model), 0.01, "open", t_s, u, y), "log", 0.5)
     residual = np.concatenate([block.residual for block in blocks(run, (), np.zeros(0))])
     assert len(run.begins) > 10

@@ -8,7 +8,7 @@ import numpy as np
 
 from logcheck.integrity import Integrity, examine
 from records.log import RunLog
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.law_tables import ce150_table
 from tests.replay.firmware_flights import flown, lively, plant
 from verification.host_law import host_law
@@ -20,7 +20,7 @@ TURN_STEP_RAD = 2.0 * np.pi / 4096.0
 def clean(duration_s: float = 20.0) -> RunLog:
     """A flight of the compiled law, with rotor speeds and rates as a rig would log them."""
     log = flown(host_law(ce150_table()), duration_s=duration_s)
-    runs = simulate(plant(), log.t_s, lively(duration_s).x0, log.u, keep="x")
+    runs = simulate(plant(), log.t_s, lively(duration_s).x0, log.u, Conditions(keep="x"))
     assert runs.x is not None
     rng, states = np.random.default_rng(2), [str(state) for state in plant().model.states]
     measured = {name: runs.x[:, states.index(name)] for name in ("omega_M_rad_s", "omega_T_rad_s", "psi_dot_rad_s")}

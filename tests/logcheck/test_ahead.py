@@ -7,14 +7,14 @@ import pytest
 
 from logcheck.ahead import read_ahead, states_along, with_axes_as_read
 from sim.bind import BoundPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from twinlaw import fly
 
 
 def test_read_ahead_from_its_own_states_a_run_is_where_it_goes(arm: BoundPlant) -> None:
     """Truth: the run itself, 30 rows behind each start, to a nanoradian."""
     log = fly(arm)
-    run = simulate(arm, log.t_s, np.zeros(2), log.u, resolution=[0.0], keep="yx")
+    run = simulate(arm, log.t_s, np.zeros(2), log.u, Conditions(resolution=[0.0], keep="yx"))
     assert run.x is not None
     assert run.y is not None
     log, starts = replace(log, y=run.y), np.array([50, 400, 900])

@@ -10,7 +10,7 @@ from logcheck.units.scale import misfit
 from records.log import RunLog
 from sim.bind import bind
 from sim.equilibrium import equilibrium
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.logcheck.flight import TURN_STEP_RAD, clean, examined, kinds, read_in, with_column
 from tests.replay.firmware_flights import plant
 
@@ -23,7 +23,7 @@ def around_rest() -> RunLog:
         clean(),
         t_s=t_s,
         u=u,
-        y=simulate(plant(), t_s, rest.x0, u, keep="y").y,
+        y=simulate(plant(), t_s, rest.x0, u, Conditions(keep="y")).y,
         loop="open",
         extra={},
         table_digest=None,

@@ -8,7 +8,7 @@ import pytest
 from design.law import FloatLaw
 from sim.bench import comparison, compiled_peers, peers, plain_law
 from sim.manoeuvres import hop
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 
 def test_the_peers_law_is_the_law(table):
@@ -41,7 +41,9 @@ def test_every_tool_ends_where_the_kernel_ends(bound, table, name):
     if work is None:
         pytest.skip(f"{name} is not installed: see `twinlaw bench`")
     p = task.p if peer.batched else plant.p
-    ours = simulate(plant, piece.t_s, piece.x0, table, reference=piece.reference_rad, p=p).x[..., -1, [1, 4]]
+    ours = simulate(plant, piece.t_s, piece.x0, table, Conditions(reference=piece.reference_rad, p=p)).x[
+        ..., -1, [1, 4]
+    ]
     np.testing.assert_allclose(np.asarray(work()), ours, atol=plant.plant.sensors["psi_rad"] / 10)
 
 

@@ -8,7 +8,7 @@ import sympy
 
 from sim.equilibrium import equilibrium
 from sim.manoeuvres import at_rest
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 MU_V = 10.0
 NOWHERE = [0.0, 0.0]
@@ -18,7 +18,7 @@ def elevation_deg(bound, u_M_MU, seconds):
     """Elevation in deg at 100 Hz, from rest on the lower stop, the azimuth locked as on the bench."""
     t = np.arange(round(seconds * 100) + 1) * 0.01
     u = np.column_stack([MU_V * np.broadcast_to(u_M_MU(t), t.shape), np.zeros(t.size)])
-    runs = simulate(bound, t, at_rest(bound), u, locked=("azimuth",), resolution=NOWHERE)
+    runs = simulate(bound, t, at_rest(bound), u, Conditions(locked=("azimuth",), resolution=NOWHERE))
     return t, np.degrees(runs.x[:, 1]), runs.u[:, 0] / MU_V
 
 
@@ -108,7 +108,7 @@ def test_the_azimuth_balances_at_0_360_MU_for_a_tail_input_of_0_15_MU(bound):
     """l_T F_T = K_A omega_M on the equations alone, at the rotors' steady speeds."""
     t = np.arange(801) * 0.01
     u = np.broadcast_to([3.60, 1.5], (t.size, 2)).copy()
-    x = simulate(bound, t, at_rest(bound), u, locked=("elevation", "azimuth"), resolution=NOWHERE).x[-1]
+    x = simulate(bound, t, at_rest(bound), u, Conditions(locked=("elevation", "azimuth"), resolution=NOWHERE)).x[-1]
     names = dict(zip(map(str, bound.model.parameter_symbols), bound.p, strict=True))
     thrust = sum(names[f"p_FT_{power}"] * x[3] ** power for power in range(5))
     assert names["l_T"] * thrust == pytest.approx(names["K_A"] * x[0], rel=5e-3)

@@ -15,8 +15,8 @@ from sim.kernel.kernel import kernel
 from sim.kernel.reference import reference
 from sim.manoeuvres import flight, hop
 from sim.model import TIME, Axis, symbol
-from sim.runs.compiled_run import Conditions, run_equations
-from sim.simulate import CController, Noise, simulate
+from sim.runs.compiled_run import run_equations
+from sim.simulate import CController, Conditions, Noise, simulate
 from tests.soak import sampled
 from toolchain import host
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
@@ -53,7 +53,7 @@ def test_the_kernel_is_the_numpy_reference_to_1e_12(which, request):
     bound = request.getfixturevalue(which)
     t, x0, u = excited(bound, 0.3)
     t = t + np.random.default_rng(1).uniform(-0.003, 0.003, t.size)  # true, uneven times
-    x = simulate(bound, t, x0, u, resolution=NOWHERE).x
+    x = simulate(bound, t, x0, u, Conditions(resolution=NOWHERE)).x
     expected = reference_rk4(bound, t, x0, u)
     np.testing.assert_allclose(x, expected, rtol=1e-12, atol=1e-12)
 
@@ -86,7 +86,11 @@ def test_one_step_per_sample_errs_by_less_than_1e_7_rad_over_the_whole_flight(bo
     manoeuvre = flight(bound)
     runs = [
         simulate(
-            bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, resolution=NOWHERE, substeps=n
+            bound,
+            manoeuvre.t_s,
+            manoeuvre.x0,
+            table,
+            Conditions(reference=manoeuvre.reference_rad, resolution=NOWHERE, substeps=n),
         ).x
         for n in (1, 100)
     ]
@@ -98,11 +102,12 @@ def test_one_step_per_sample_errs_by_less_than_1e_7_rad_over_the_whole_flight(bo
 def test_replayed_pieces_of_a_quantised_flight_err_by_less_than_1e_7_rad(bound, table):
     """One second each from the true states, inputs as flown with the encoders' steps in the loop: many stops and reversals."""
     manoeuvre = flight(bound)
-    flown = simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad)
+    flown = simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, Conditions(reference=manoeuvre.reference_rad))
     starts = np.arange(0, flown.t_s.size - 101, 100)
     u = np.stack([flown.u[k : k + 101] for k in starts])
     runs = [
-        simulate(bound, np.arange(101) * 0.01, flown.x[starts], u, resolution=NOWHERE, substeps=n).x for n in (1, 100)
+        simulate(bound, np.arange(101) * 0.01, flown.x[starts], u, Conditions(resolution=NOWHERE, substeps=n)).x
+        for n in (1, 100)
     ]
     assert np.max(np.abs(runs[0] - runs[1])[:, :, [1, 4]]) < 1e-7
 
@@ -112,7 +117,10 @@ def test_the_step_halving_check_reports_the_error_that_there_is(bound, table):
     manoeuvre = hop(bound)
     arguments = (bound, manoeuvre.t_s, manoeuvre.x0, table)
     report = step_error(*arguments, reference=manoeuvre.reference_rad)
-    runs = [simulate(*arguments, reference=manoeuvre.reference_rad, resolution=NOWHERE, substeps=n).y for n in (1, 100)]
+    runs = [
+        simulate(*arguments, Conditions(reference=manoeuvre.reference_rad, resolution=NOWHERE, substeps=n)).y
+        for n in (1, 100)
+    ]
     true = np.max(np.abs(runs[0] - runs[1]), axis=0)
     assert np.all(report.estimate > true / 2)
     assert np.all(report.estimate < true * 2)
@@ -135,7 +143,7 @@ def test_batched_and_single_closed_loops_are_the_same_bits(bound, table, substep
 
 def test_outputs_are_whole_encoder_steps_and_inputs_stay_in_range(bound, table):
     manoeuvre = hop(bound)
-    runs = simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad)
+    runs = simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, Conditions(reference=manoeuvre.reference_rad))
     step = bound.plant.sensors["psi_rad"]
     counts = runs.y / step
     assert np.max(np.abs(counts - np.round(counts))) < 1e-9
@@ -158,7 +166,9 @@ def test_a_controller_in_c_may_close_the_loop(bound):
     ffi, lib = load_shared("void law(void *, const double *, const double *, double *);", path)
     gain, manoeuvre = ffi.new("double *", 2.5), hop(bound)
     address = [int(ffi.cast("uintptr_t", pointer)) for pointer in (ffi.addressof(lib, "law"), gain)]
-    flown = simulate(bound, manoeuvre.t_s, manoeuvre.x0, CController(*address), reference=manoeuvre.reference_rad)
+    flown = simulate(
+        bound, manoeuvre.t_s, manoeuvre.x0, CController(*address), Conditions(reference=manoeuvre.reference_rad)
+    )
     np.testing.assert_array_equal(flown.u[:, 0], 5.0 + 2.5 * (manoeuvre.reference_rad[:, 0] - flown.y[:, 0]))
     assert np.array_equal(simulate(bound, manoeuvre.t_s, manoeuvre.x0, flown.u).x, flown.x)
 
@@ -167,7 +177,8 @@ def test_noise_is_repeatable_normal_and_of_the_stated_size(bound):
     t, x0, u = excited(bound, 20.0)
     options = {"resolution": NOWHERE, "locked": ("elevation", "azimuth")}
     first, again, other = (
-        simulate(bound, t, x0, u, noise=Noise(seed, measurement_sd=[0.01, 0.02]), **options).y for seed in (1, 1, 2)
+        simulate(bound, t, x0, u, Conditions(noise=Noise(seed, measurement_sd=[0.01, 0.02]), **options)).y
+        for seed in (1, 1, 2)
     )
     assert np.array_equal(first, again)
     assert not np.array_equal(first, other)
@@ -193,7 +204,7 @@ def test_a_model_with_every_kind_of_expression_compiles_to_what_it_says(mechanis
     bound = replace(plain, model=model)
     for x0 in ([0.3, 0.5], [-0.4, 0.1], [0.02, -0.7]):
         h = 1e-7
-        x = simulate(bound, [0.25, 0.25 + h], x0, np.zeros((2, 1)), resolution=[0.0]).x
+        x = simulate(bound, [0.25, 0.25 + h], x0, np.zeros((2, 1)), Conditions(resolution=[0.0])).x
         expected = float(force.subs({s: x0[0], v: x0[1], TIME: 0.25}).evalf()) / 2.0
         assert (x[1, 1] - x[0, 1]) / h == pytest.approx(expected, rel=1e-5)
 
@@ -213,8 +224,8 @@ def test_what_a_file_may_use_runs_side_by_side_as_alone(mechanism):
     model = replace(plain.model, states=(*at, *rates), rates={**plain.model.rates, **rates})
     bound = replace(plain, model=model)
     t_s, x0, u = [0.0, 1e-7], [*at.values(), *np.zeros(len(rates))], np.zeros((2, 1))
-    alone = simulate(bound, t_s, x0, u, resolution=[0.0]).x
-    side_by_side = simulate(bound, t_s, x0, u, p=np.tile(bound.p, (16, 1)), resolution=[0.0]).x
+    alone = simulate(bound, t_s, x0, u, Conditions(resolution=[0.0])).x
+    side_by_side = simulate(bound, t_s, x0, u, Conditions(p=np.tile(bound.p, (16, 1)), resolution=[0.0])).x
     for k, (found, rate) in enumerate(zip(alone[1, 2:] / 1e-7, rates.values(), strict=True)):
         assert found == pytest.approx(float(rate.subs(at).evalf()), rel=1e-5), USABLE[k]
     assert np.array_equal(side_by_side, np.tile(alone, (16, 1, 1)))
@@ -228,7 +239,7 @@ def test_a_held_axis_may_have_other_friction_up_than_down(mechanism):
     lopsided = replace(axis, coulomb=sympy.Float(0.35) + sympy.Float(0.15) * sign)
     bound = replace(plain, model=replace(plain.model, axes=(lopsided,)))
     for force, moves in ((0.49, False), (0.51, True), (-0.19, False), (-0.21, True)):
-        x = simulate(bound, [0.0, 1.0], [0.0, 0.0], np.full((2, 1), force), resolution=[0.0]).x
+        x = simulate(bound, [0.0, 1.0], [0.0, 0.0], np.full((2, 1), force), Conditions(resolution=[0.0])).x
         assert bool(x[1, 0] != 0.0) is moves
 
 

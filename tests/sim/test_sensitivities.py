@@ -6,7 +6,7 @@ import pytest
 from records.errors import BadInput
 from sim.manoeuvres import flight
 from sim.runs.sensitivities import column_places
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.sim.slopes import slopes
 
 RELATIVE = 1e-4  # what central differences with the steps below leave of it
@@ -26,7 +26,9 @@ def differences(bound, t, u, x0, name, step):
             v[:, place - parameters - inputs] += sign * step
         else:
             x[place - parameters - 2 * inputs] += sign * step
-        ends.append(simulate(bound, t, x, v, p=p, resolution=np.zeros(len(bound.model.outputs)), keep="y").y)
+        ends.append(
+            simulate(bound, t, x, v, Conditions(p=p, resolution=np.zeros(len(bound.model.outputs)), keep="y")).y
+        )
     return (ends[0] - ends[1]) / (2 * step)
 
 
@@ -45,7 +47,7 @@ def check(bound, t, u, x0, names):
 def test_every_coefficient_input_and_start_of_the_ce150(bound, table):
     """A second of the flight with the azimuth turning through rest and the tail rotor through its kink."""
     manoeuvre = flight(bound)
-    flown = simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad)
+    flown = simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, Conditions(reference=manoeuvre.reference_rad))
     piece = slice(4010, 4111)
     x0, u = flown.x[4010], flown.u[piece]
     assert np.any(flown.x[piece, 2] == 0.0)
@@ -58,7 +60,7 @@ def test_every_coefficient_input_and_start_of_the_ce150(bound, table):
     }  # an axis at rest has no slope by its velocity
     names = tuple(name for name in column_places(bound.model) if name not in skipped)
     found = check(bound, np.arange(101) * 0.01, u, x0, names)
-    plain = simulate(bound, np.arange(101) * 0.01, x0, u, resolution=[0.0, 0.0])
+    plain = simulate(bound, np.arange(101) * 0.01, x0, u, Conditions(resolution=[0.0, 0.0]))
     np.testing.assert_array_equal(found.x, plain.x)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from records.plant import load_plant
 from sim.bind import BoundPlant, bind
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from sim.substeps import MOST_SUBSTEPS, fastest_rad_s, steps_a_stretch
 from tests.own_plants import OwnPlant
 from tests.plants import bound
@@ -35,7 +35,7 @@ def test_a_stage_decays_at_its_own_rate(rate_rad_s: float, tmp_path: Path) -> No
     # Truth: exp(-w t), its rate to 1e-4.
     plant = stage(tmp_path, rate_rad_s)
     steps = steps_a_stretch(plant, fastest_rad_s(plant, [1.0]), PERIOD_S)
-    run = simulate(plant, np.arange(2) * PERIOD_S, np.ones(1), np.zeros((2, 1)), substeps=steps, keep="x")
+    run = simulate(plant, np.arange(2) * PERIOD_S, np.ones(1), np.zeros((2, 1)), Conditions(substeps=steps, keep="x"))
     assert run.x is not None
     assert -math.log(run.x.ravel()[1]) / PERIOD_S == pytest.approx(rate_rad_s, rel=1e-4)
 
@@ -44,7 +44,7 @@ def test_what_settles_within_a_sample_takes_no_more_steps_than_keep_it_finite(tm
     # Truth: of 100 time constants nothing is left, exp(-100), in a tenth of the steps that would follow it; of 2500 so many are enough.
     plant = stage(tmp_path, 100.0 / PERIOD_S)
     steps = steps_a_stretch(plant, fastest_rad_s(plant, [1.0]), PERIOD_S)
-    run = simulate(plant, np.arange(2) * PERIOD_S, np.ones(1), np.zeros((2, 1)), substeps=steps, keep="x")
+    run = simulate(plant, np.arange(2) * PERIOD_S, np.ones(1), np.zeros((2, 1)), Conditions(substeps=steps, keep="x"))
     assert run.x is not None
     assert abs(run.x.ravel()[1]) < 1e-6
     assert steps <= 40

@@ -13,7 +13,7 @@ from records.plant import Plant
 from sim.bind import BoundPlant, bind
 from sim.loop import steps_a_sample
 from sim.manoeuvres import Manoeuvre
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from sim.wiring import Wiring, wiring
 from verification.comparison.conditions import spread, with_effect
 from verification.comparison.manoeuvres import figures, spread_figure
@@ -176,7 +176,9 @@ def fly_plan(bound: BoundPlant, wired: WiredLaw, plan: Manoeuvre, p: Array | Non
     """One flight for each row of `p` (runs, parameters), or one with the plant's own parameters."""
     drive = wired.law.controller(plan.t_s.size)
     substeps = steps_a_sample(bound, plan)
-    runs = simulate(bound, plan.t_s, plan.x0, drive, reference=plan.reference_rad, p=p, substeps=substeps, keep="uy")
+    runs = simulate(
+        bound, plan.t_s, plan.x0, drive, Conditions(reference=plan.reference_rad, p=p, substeps=substeps, keep="uy")
+    )
     assert runs.u is not None
     assert runs.y is not None
     outputs, inputs = list(wired.wires.outputs), list(wired.wires.inputs)

@@ -7,7 +7,7 @@ import numpy as np
 from records.table import AXES
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from verification.comparison.flights import Flown
 
 MODEL = "ce150_velagic"
@@ -43,7 +43,7 @@ def fly_open_loop(bound: BoundPlant) -> dict[str, Flown]:
     x0, flown = equilibrium(bound, REST_RAD).x0, {}
     for run in RUNS:
         u_V = bound.parameter("MU") * np.column_stack([np.array(run.main_MU)[step], np.array(run.tail_MU)[step]])
-        runs = simulate(bound, t_s, x0, u_V, keep="y")
+        runs = simulate(bound, t_s, x0, u_V, Conditions(keep="y"))
         assert runs.y is not None
         flown[run.name] = Flown(t_s, np.full((samples, len(AXES)), np.nan), runs.y, u_V)
     return flown

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from identification.experiments.velagic.rig import PERIOD_S, VelagicRig
 from sim.bind import BoundPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 
 Array = NDArray[np.float64]
 SLOW_MU_S, RAMP_MU_S = 0.002, 0.01
@@ -67,7 +67,7 @@ def _both(rig: VelagicRig, identified: BoundPlant, u_MU: Array) -> Response:
     x0 = np.zeros(len(identified.model.states))
     x0[[str(state) for state in identified.model.states].index("psi_rad")] = -identified.parameter("Psi_lim")
     volts = identified.parameter("MU") * u_MU
-    y = simulate(identified, t_s, x0, volts, resolution=[0.0, 0.0], locked=locked, keep="y").y
+    y = simulate(identified, t_s, x0, volts, Conditions(resolution=[0.0, 0.0], locked=locked, keep="y")).y
     assert y is not None
     return Response(t_s, u_MU, measured, y[:, column])
 

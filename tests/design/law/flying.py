@@ -11,7 +11,7 @@ import numpy as np
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
-from sim.simulate import CController, simulate
+from sim.simulate import CController, Conditions, simulate
 
 SAMPLE_PERIOD_S = 0.01
 
@@ -99,7 +99,7 @@ def fly(
     if start_deg is None:
         x0[1] = -bound.parameter("Psi_lim")
     drive = law if isinstance(law, ControllerTable) else _compiled_call(law)
-    runs = simulate(bound, t_s, x0, drive, reference=np.radians(reference_deg))
+    runs = simulate(bound, t_s, x0, drive, Conditions(reference=np.radians(reference_deg)))
     assert runs.u is not None
     assert runs.x is not None
     return Flown(t_s, runs.u, np.degrees(runs.x[:, [1, 4]]), reference_deg)

@@ -18,7 +18,7 @@ from sim.added_effects import library
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.effect import Effect, Values
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.diagnosis.arm import LONG_S, arm, arm_case, arm_log, plain_linearisation
 from tests.diagnosis.nominal import nominal_fit
 from tests.own_plants import PLAIN, OwnPlant
@@ -103,7 +103,7 @@ def test_where_an_input_pushes_now_one_way_now_the_other_passes_are_made(tmp_pat
     bound = bind(load_plant(squared.write(tmp_path, "square")))
     t_s = 0.01 * np.arange(600)
     u = 3.0 * np.sin(2.0 * t_s) + 2.0 * np.sin(5.0 * t_s)
-    run = simulate(bound, t_s, np.zeros(2), u[:, None], keep="y")
+    run = simulate(bound, t_s, np.zeros(2), u[:, None], Conditions(keep="y"))
     y = np.asarray(run.y).reshape(len(t_s), -1)
     case = make_case(effect_library(bound), [RunLog(log_columns(bound.model), 0.01, "open", t_s, u[:, None], y)])
     linearisation = linearised(case, nominal_fit(case))

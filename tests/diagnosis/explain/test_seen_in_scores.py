@@ -19,7 +19,7 @@ from records.plant import load_plant
 from sim.added_effects import with_effects
 from sim.bind import bind
 from sim.columns import log_columns
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
 from tests.diagnosis.nominal import nominal_fit
 from tests.soak import SOAK
@@ -43,7 +43,7 @@ def test_steps_of_an_input_that_no_rotor_stands_behind_are_found() -> None:
     rates, phases = np.random.default_rng(7).uniform((0.5, 0.0), (6.0, 6.3), (5, 2)).T
     u = 0.5 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)[:, None]
     rig = with_effects(motor, {"input.quantization": {"q": 0.1}})
-    run = simulate(rig, t_s, np.zeros(3), u, substeps=40, keep="y")
+    run = simulate(rig, t_s, np.zeros(3), u, Conditions(substeps=40, keep="y"))
     case = make_case(effect_library(motor), [RunLog(log_columns(motor.model), 0.02, "open", t_s, u, run.y)])
     found = likely_steps(linearised(case, nominal_fit(case)), "input")
     assert min(abs(step / 0.1 - 1.0) for step, _ in found) < 0.01
@@ -57,7 +57,7 @@ def test_steps_of_a_command_that_takes_a_hundredth_of_its_range_are_found() -> N
     rates, phases = np.random.default_rng(7).uniform((0.5, 0.0), (6.0, 6.3), (5, 2)).T
     u = 0.003 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)[:, None]
     rig = with_effects(drone, {"input.quantization": {"q": 0.003}})
-    run = simulate(rig, t_s, np.zeros(4), u, substeps=4, keep="y")
+    run = simulate(rig, t_s, np.zeros(4), u, Conditions(substeps=4, keep="y"))
     case = make_case(effect_library(drone), [RunLog(log_columns(drone.model), 0.004, "open", t_s, u, run.y)])
     found = likely_steps(linearised(case, best_plain_fit(case)), "input")
     assert min(abs(step / 0.003 - 1.0) for step, _ in found) < 0.01

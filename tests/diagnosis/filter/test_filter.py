@@ -26,7 +26,7 @@ from records.plant import load_plant
 from sim.bind import BoundPlant, bind, evaluated
 from sim.columns import log_columns
 from sim.effect import Role
-from sim.simulate import Noise, simulate
+from sim.simulate import Conditions, Noise, simulate
 from tests.diagnosis.arm import plain_linearisation
 from tests.diagnosis.conftest import LONG_S, Fly
 from tests.diagnosis.nominal import nominal_fit
@@ -414,7 +414,7 @@ def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(
     reference[:, 0] = np.interp(t_s, [3.0, 8.6], [-0.2, 0.248]) + 0.1 * (t_s > 12.0)
     noise = Noise(1, process_sd=[0.0, 0.0, 2e-4, 0.0, 0.0, 2e-4])
     x0 = np.array([470.0, 0.0, 0.0, 150.0, 0.0, 0.0])
-    run = simulate(plant, t_s, x0, table, reference=reference, noise=noise, keep="uy")
+    run = simulate(plant, t_s, x0, table, Conditions(reference=reference, noise=noise, keep="uy"))
     log = RunLog(log_columns(plant.model), 0.01, "closed", t_s[880:], run.u[880:], run.y[880:])
     case = make_case(library, [log])
     (found,) = passes(case, nominal_hypothesis(case, -3.2)) or [None]
@@ -431,7 +431,7 @@ def test_a_state_that_settles_well_within_a_row_neither_rings_nor_grows(L: float
     motor = bind(replace(stated, parameters={**stated.parameters, "L": winding}))
     t_s = np.arange(0.0, 8.0, 0.02)
     u = 3.0 * np.sign(np.sin(2.0 * np.pi * (0.6 + 0.1 * t_s) * t_s + 0.1))[:, None]
-    run = simulate(motor, t_s, np.zeros(3), drive=u, substeps=substeps)
+    run = simulate(motor, t_s, np.zeros(3), drive=u, under=Conditions(substeps=substeps))
     case = make_case(effect_library(motor), [RunLog(log_columns(motor.model), 0.02, "open", t_s, u, run.y)])
     found = predictions(case, case.flights[0], nominal_hypothesis(case, -3.0))
     assert np.nanmax(np.abs(found - run.y)) < 0.01

@@ -13,7 +13,7 @@ from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.columns import log_columns
-from sim.simulate import Noise, simulate
+from sim.simulate import Conditions, Noise, simulate
 from tests.diagnosis.arm import arm_case, arm_log
 from tests.plants import bound
 
@@ -59,7 +59,7 @@ def coil_case(noise: float) -> Case:
     rig = bound("maglev_coil")
     t_s = 0.001 * np.arange(8000)
     u = np.random.default_rng(5).choice([0.2, 0.4, 0.8], len(t_s) // 200 + 1).repeat(200)[: len(t_s), None]
-    run = simulate(rig, t_s, np.zeros(1), u, noise=Noise(6, process_sd=np.array([noise])), keep="y")
+    run = simulate(rig, t_s, np.zeros(1), u, Conditions(noise=Noise(6, process_sd=np.array([noise])), keep="y"))
     y = np.asarray(run.y).reshape(len(t_s), -1) + np.random.default_rng(7).normal(0.0, 7e-3, (len(t_s), 1))
     return make_case(effect_library(rig), [RunLog(log_columns(rig.model), 0.001, "open", t_s, u, y)])
 

@@ -19,7 +19,7 @@ from sim.bind import BoundPlant, bind
 from sim.equilibrium import equilibrium
 from sim.loop import closed_loop_log
 from sim.manoeuvres import Manoeuvre
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.diagnosis.nominal import nominal_fit
 from tests.law_tables import ce150_table
 
@@ -44,7 +44,9 @@ def flown(plant: BoundPlant, moved: dict[str, float]) -> RunLog:
     rig, x0 = plant.p.copy(), equilibrium(plant, 0.0).x0
     for name, by in moved.items():
         rig[index(plant, name)] += by * plant.sd[index(plant, name)]
-    run = simulate(plant, T_S, x0, ce150_table(), reference=reference, p=rig, keep="uy", locked=("azimuth",))
+    run = simulate(
+        plant, T_S, x0, ce150_table(), Conditions(reference=reference, p=rig, keep="uy", locked=("azimuth",))
+    )
     assert run.u is not None
     assert run.y is not None
     log = closed_loop_log(plant, Manoeuvre("m", T_S, reference, x0), run.u, run.y, None)

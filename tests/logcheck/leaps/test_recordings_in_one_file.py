@@ -17,7 +17,7 @@ from records.log import RunLog, load_log, save_log
 from records.logs.restarts import restart_rows
 from sim.columns import log_columns
 from sim.manoeuvres import stir
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
 from tests.plants import bound
 
@@ -252,7 +252,7 @@ def test_a_current_that_settles_and_an_arm_that_an_input_sets_going_are_read(pla
     # Truth: a simulated run without noise, every reading of it sound; the input's steps set off all that moves.
     rig = bound(plant)
     moved = stir(rig)
-    y = simulate(rig, moved.t_s, moved.x0, moved.u, keep="y").y
+    y = simulate(rig, moved.t_s, moved.x0, moved.u, Conditions(keep="y")).y
     assert y is not None
     step = rig.plant.sensors[next(iter(rig.model.outputs))]
     log = RunLog(log_columns(rig.model), 0.01, "open", moved.t_s, moved.u, step * np.round(y / step))

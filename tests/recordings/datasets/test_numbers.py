@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from recordings.datasets.matlab import array, stream, variables
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.plants import bound
 from tests.recorded import dataset_folder, recorded
 
@@ -79,7 +79,7 @@ def test_aeroshield_older_runs_swing_as_the_later_ones_at_their_own_rate() -> No
         x0 = [log.y[0, 0], 0.0]
 
         def error(guess: np.ndarray) -> np.ndarray:
-            run = simulate(plant, log.t_s, x0, log.u, p=[*guess, 3.7], resolution=0.0, keep="y")
+            run = simulate(plant, log.t_s, x0, log.u, Conditions(p=[*guess, 3.7], resolution=0.0, keep="y"))
             assert run.y is not None
             return (run.y - log.y).ravel()
 

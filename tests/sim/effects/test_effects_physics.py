@@ -12,7 +12,7 @@ from sim.added_effects import combined, library, with_effects, with_values
 from sim.bind import BoundPlant, bind
 from sim.composition.table import plain_values
 from sim.effect import Effect, Role, coefficient
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.sim.conftest import PLANTS
 from tests.sim.plain_rig import (
     BEGIN_S,
@@ -144,7 +144,7 @@ def placed(everything: BoundPlant, chosen: Case) -> BoundPlant:
 
 
 def outputs(bound: BoundPlant, start: tuple[float, ...]) -> np.ndarray:
-    found = simulate(bound, T_S, ordered(start), U, resolution=EXACT, keep="y").y
+    found = simulate(bound, T_S, ordered(start), U, Conditions(resolution=EXACT, keep="y")).y
     assert found is not None
     return found
 

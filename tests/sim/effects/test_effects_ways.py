@@ -15,7 +15,7 @@ from sim.paths.output_stages import OutputDelay
 from sim.paths.path import Held, Trace
 from sim.runs.on_the_way import arriving
 from sim.runs.stepped import SteppedPlant
-from sim.simulate import Noise, simulate
+from sim.simulate import Conditions, Noise, simulate
 from tests.sim.conftest import PLANTS
 
 BOUND = bind(load_plant(PLANTS / "ce150.toml"))
@@ -31,7 +31,7 @@ def values(name: str) -> dict[str, dict[str, float]]:
 
 
 def outputs(bound: BoundPlant) -> np.ndarray:
-    found = simulate(bound, T_S, START, U, resolution=EXACT, keep="y").y
+    found = simulate(bound, T_S, START, U, Conditions(resolution=EXACT, keep="y")).y
     assert found is not None
     return found
 
@@ -188,11 +188,13 @@ def test_the_law_flies_a_plant_with_delays_and_late_encoders(table: ControllerTa
 def test_runs_side_by_side_pass_the_ways_one_by_one() -> None:
     bound = with_effects(BOUND, values("loop.delay") | values("psi_sensor.lag"))
     p = np.array([bound.p, bound.p * 1.01])
-    both = simulate(bound, T_S, START, U, p=p, resolution=EXACT).y
+    both = simulate(bound, T_S, START, U, Conditions(p=p, resolution=EXACT)).y
     assert both is not None
     for index in (0, 1):
-        np.testing.assert_array_equal(both[index], simulate(bound, T_S, START, U, p=p[index], resolution=EXACT).y)
-    per_run = simulate(bound, T_S, START, np.array([U, U]), resolution=EXACT).y
+        np.testing.assert_array_equal(
+            both[index], simulate(bound, T_S, START, U, Conditions(p=p[index], resolution=EXACT)).y
+        )
+    per_run = simulate(bound, T_S, START, np.array([U, U]), Conditions(resolution=EXACT)).y
     assert per_run is not None
     np.testing.assert_array_equal(per_run[1], outputs(bound))
 
@@ -200,10 +202,10 @@ def test_runs_side_by_side_pass_the_ways_one_by_one() -> None:
 def test_readings_behind_a_delay_are_rounded_to_the_encoder_s_steps_with_the_run_s_noise() -> None:
     bound = with_effects(BOUND, values("psi_sensor.delay"))
     step = BOUND.plant.sensors["psi_rad"]
-    y = simulate(bound, T_S, START, U, noise=Noise(1, [1e-3, 1e-3])).y
+    y = simulate(bound, T_S, START, U, Conditions(noise=Noise(1, [1e-3, 1e-3]))).y
     assert y is not None
     np.testing.assert_allclose(y[:, 0] / step, np.rint(y[:, 0] / step), rtol=0, atol=1e-9)
-    exact = simulate(bound, T_S, START, U, noise=Noise(1, [1e-3, 1e-3]), resolution=EXACT).y
+    exact = simulate(bound, T_S, START, U, Conditions(noise=Noise(1, [1e-3, 1e-3]), resolution=EXACT)).y
     assert exact is not None
     assert 5e-4 < np.std(exact - outputs(bound)) < 2e-3
 
@@ -213,7 +215,11 @@ def test_a_loop_with_ways_is_flown_once_and_without_noise(table: ControllerTable
     manoeuvre = hop(BOUND)
     with pytest.raises(BadInput, match="closed loop: got noise or several runs"):
         simulate(
-            bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, noise=Noise(1, [1e-3, 1e-3])
+            bound,
+            manoeuvre.t_s,
+            manoeuvre.x0,
+            table,
+            Conditions(reference=manoeuvre.reference_rad, noise=Noise(1, [1e-3, 1e-3])),
         )
     with pytest.raises(BadInput, match="reference: got nothing"):
         simulate(bound, manoeuvre.t_s, manoeuvre.x0, table)
@@ -225,7 +231,7 @@ def test_a_reading_whose_rate_jumps_with_the_input_is_late_by_its_delay() -> Non
     t_s = 0.01 * np.arange(60)
     u = np.where(t_s < 0.3, 0.2, 0.4)[:, None]
     late = with_effects(coil, {"i_sensor.delay": {"tau": 0.02}})
-    plain, behind = (simulate(bound, t_s, [0.0], u, resolution=[0.0], keep="y").y for bound in (coil, late))
+    plain, behind = (simulate(bound, t_s, [0.0], u, Conditions(resolution=[0.0], keep="y")).y for bound in (coil, late))
     assert plain is not None
     assert behind is not None
     np.testing.assert_allclose(behind[2:], plain[:-2], rtol=1e-12, atol=1e-15)

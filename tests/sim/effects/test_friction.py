@@ -9,7 +9,7 @@ import sympy
 
 from sim.bind import BoundPlant
 from sim.model import TIME, ParameterSpec, symbol
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.sim.conftest import POSITION, VELOCITY
 
 EXACT = 1e-12  # motions that are cubic in time are exact for RK4 but for rounding
@@ -39,7 +39,7 @@ def driven(mechanism) -> Callable[..., BoundPlant]:
 def run(bound, x0, u=0.0, seconds=3.0, period=0.01, **options):
     t = np.arange(round(seconds / period) + 1) * period
     u = np.broadcast_to(np.asarray(u, float).reshape(-1, 1), (t.size, 1)).copy()
-    return t, simulate(bound, t, x0, u, resolution=[0.0], **options).x
+    return t, simulate(bound, t, x0, u, Conditions(resolution=[0.0], **options)).x
 
 
 def test_a_sliding_body_stops_where_and_when_friction_says_and_stays(driven):

@@ -14,7 +14,7 @@ from sim.equations import nominal_model
 from sim.equations.check import RULES
 from sim.manoeuvres import stir
 from sim.plants import MODELS
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.own_plants import PLAIN, REFUSED, WHEEL
 
 NAME = "my_plain"
@@ -148,7 +148,7 @@ def test_changed_equations_move_otherwise(folder: Path) -> None:
     # Truth: J theta'' = K u at rest, so twice the K bends the start of the way twice as much: 1/2 K u / J t^2.
     def way() -> float:
         arm = bind(load_plant(folder / "plant.toml"))
-        run = simulate(arm, np.array([0.0, 0.01]), [0.0, 0.0], np.ones((2, 1)), resolution=[0.0], keep="y")
+        run = simulate(arm, np.array([0.0, 0.01]), [0.0, 0.0], np.ones((2, 1)), Conditions(resolution=[0.0], keep="y"))
         assert run.y is not None
         return float(run.y[-1, 0])
 

@@ -5,7 +5,7 @@ import pytest
 
 from identification.experiments.velagic.rig import PERIOD_S, PHI, PSI, UPRIGHT, VelagicRig
 from sim.equilibrium import equilibrium
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.plants import bound
 
 HOVER_MU = {-45.0: 0.4422, -30.0: 0.5076, -20.0: 0.5361, -10.0: 0.5530, 0.0: 0.5587}  # a_1 u^2 + b_1 u = tau_G cos(Psi)
@@ -23,7 +23,7 @@ def test_at_048_mu_the_tail_motor_must_give_038_mu() -> None:
     u_2 = VelagicRig(plant).balance_MU(0.48)
     assert u_2 == pytest.approx(0.38, abs=0.005)
     x0 = np.array([288.0, 288.0, -np.pi / 5, 0.0, 800.0 * u_2, 800.0 * u_2, 0.3, 0.0])
-    run = simulate(plant, np.arange(100) * 0.02, x0, np.tile([4.8, 10.0 * u_2], (100, 1)), resolution=0.0)
+    run = simulate(plant, np.arange(100) * 0.02, x0, np.tile([4.8, 10.0 * u_2], (100, 1)), Conditions(resolution=0.0))
     assert run.y is not None
     np.testing.assert_allclose(run.y[:, 1], 0.3, atol=1e-9)
 
@@ -38,7 +38,11 @@ def test_it_moves_as_the_paper_s_equations_in_the_paper_s_variables(locked: bool
     x0 = np.zeros(8)
     x0[2] = -np.pi / 4
     run = simulate(
-        plant, np.arange(6000) * PERIOD_S, x0, 10.0 * u, resolution=0.0, locked=("azimuth",) if locked else ()
+        plant,
+        np.arange(6000) * PERIOD_S,
+        x0,
+        10.0 * u,
+        Conditions(resolution=0.0, locked=("azimuth",) if locked else ()),
     )
     assert run.y is not None
     assert np.ptp(run.y[:, 0]) > 0.2
@@ -55,7 +59,7 @@ def test_motion_tells_ratios_of_torques_alone() -> None:
     other = bound("ce150_velagic", **{name: factor * one.parameter(name) for name, factor in scaled.items()})
     u = np.repeat(np.random.default_rng(2).uniform([4.6, 3.5], [5.4, 4.5], (10, 2)), 100, axis=0)
     x0 = np.array([0.0, 0.0, -np.pi / 4, 0.0, 0.0, 0.0, 0.0, 0.0])
-    flights = [simulate(plant, np.arange(1000) * 0.02, x0, u, resolution=0.0).y for plant in (one, other)]
+    flights = [simulate(plant, np.arange(1000) * 0.02, x0, u, Conditions(resolution=0.0)).y for plant in (one, other)]
     assert flights[0] is not None
     assert np.ptp(flights[0][:, 0]) > 0.2
     np.testing.assert_allclose(flights[1], flights[0], atol=1e-9)

@@ -6,14 +6,16 @@ from scipy.optimize import least_squares
 
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.plants import bound
 from tests.recorded import recorded
 
 
 def predicted(plant: BoundPlant, log: RunLog, x0: list[float], rows: slice = slice(None)) -> np.ndarray:
     """Free-running outputs with the recorded inputs at the recorded times."""
-    run = simulate(plant, log.t_s[rows], x0, log.u[rows].copy(), resolution=0.0, locked=log.locked, keep="y")
+    run = simulate(
+        plant, log.t_s[rows], x0, log.u[rows].copy(), Conditions(resolution=0.0, locked=log.locked, keep="y")
+    )
     assert run.y is not None
     return run.y
 

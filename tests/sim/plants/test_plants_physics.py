@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from sim.bind import BoundPlant
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.plants import bound
 
 
 def states(
     plant: BoundPlant, t_s: np.ndarray, x0: list[float], u: list[float], locked: tuple[str, ...] = ()
 ) -> np.ndarray:
-    run = simulate(plant, t_s, x0, np.tile(u, (t_s.size, 1)), resolution=0.0, locked=locked)
+    run = simulate(plant, t_s, x0, np.tile(u, (t_s.size, 1)), Conditions(resolution=0.0, locked=locked))
     assert run.x is not None
     return run.x
 

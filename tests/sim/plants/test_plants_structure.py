@@ -9,7 +9,7 @@ import pytest
 from records.plant import load_plant, parse_plant, plant_text
 from sim.columns import log_columns
 from sim.kernel.reference import reference
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.plants import PLANTS, bound
 
 CONTRACT = {  # columns after t_s as the contract has them, then any of the optional ones; axes
@@ -105,7 +105,7 @@ def test_the_compiled_kernel_follows_the_equations(name: str) -> None:
     k2 = equations(0.0, x + h / 2 * k1, u[0], plant.p, signs)
     k3 = equations(0.0, x + h / 2 * k2, u[0], plant.p, signs)
     k4 = equations(0.0, x + h * k3, u[0], plant.p, signs)
-    run = simulate(plant, [0.0, h], x, u, resolution=0.0)
+    run = simulate(plant, [0.0, h], x, u, Conditions(resolution=0.0))
     assert run.x is not None
     np.testing.assert_allclose(run.x[1], x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), rtol=1e-12)
 

@@ -20,7 +20,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.manoeuvres import stir
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.diagnosis.arm import arm_log
 from tests.page_units import without_unit
 from tests.soak import SOAK, sampled
@@ -134,7 +134,7 @@ def swung() -> RunLog:
     """A run of the AeroShield with the plant file's own numbers, without noise."""
     rig = bind(load_plant(Path(AEROSHIELD[1])))
     moved = stir(rig)
-    y = simulate(rig, moved.t_s, moved.x0, moved.u, keep="y").y
+    y = simulate(rig, moved.t_s, moved.x0, moved.u, Conditions(keep="y")).y
     return RunLog(log_columns(rig.model), 0.01, "open", moved.t_s, moved.u, y)
 
 

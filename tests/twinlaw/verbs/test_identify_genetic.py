@@ -14,7 +14,7 @@ from records.log import RunLog, save_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.page_units import without_unit
 from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
@@ -106,7 +106,7 @@ def test_an_interrupted_evolution_over_a_log_leaves_the_best_so_far(monkeypatch,
     u = np.column_stack([np.where(t_s < 2.5, 5.3, 5.0), np.zeros(500)])
     x0 = np.zeros(8)
     x0[2] = -np.pi / 4
-    y = simulate(bound, t_s, x0, u, locked=("azimuth",)).y
+    y = simulate(bound, t_s, x0, u, Conditions(locked=("azimuth",))).y
     save_log(tmp_path / "log.csv", RunLog(log_columns(bound.model), 0.01, "open", t_s, u, y, locked=("azimuth",)))
     told = stops_when_told(monkeypatch, 3)
     arguments = [

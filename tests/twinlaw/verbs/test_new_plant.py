@@ -12,7 +12,7 @@ from records.plant import load_plant
 from records.table import ControllerTable, Schedule, load_table
 from sim.added_effects import library
 from sim.bind import BoundPlant, bind
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.soak import sampled
 from tests.test_project import ROOT
 from twinlaw import design, load
@@ -111,7 +111,7 @@ def test_the_arm_swings_as_its_equation_says(arm: BoundPlant) -> None:
     decay = b / (2.0 * J)
     omega = np.sqrt(tau_g / J - decay**2)
     t_s = np.arange(0.0, 2.0, 0.01)
-    run = simulate(arm, t_s, x0=[1e-3, 0.0], drive=np.zeros((t_s.size, 1)), resolution=[0.0])
+    run = simulate(arm, t_s, x0=[1e-3, 0.0], drive=np.zeros((t_s.size, 1)), under=Conditions(resolution=[0.0]))
     assert run.y is not None
     expected = 1e-3 * np.exp(-decay * t_s) * (np.cos(omega * t_s) + decay / omega * np.sin(omega * t_s))
     np.testing.assert_allclose(run.y[:, 0], expected, rtol=0, atol=1e-8)

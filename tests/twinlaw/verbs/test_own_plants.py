@@ -16,7 +16,7 @@ from sim.added_effects import library, with_effects
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.manoeuvres import at_rest
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from tests.own_plants import PLAIN, REFUSED, WORKING, OwnPlant
 from tests.soak import sampled
 from twinlaw import diagnose, fly, identify
@@ -172,7 +172,7 @@ def test_a_third_of_a_second_of_a_fast_motor_names_its_dry_friction(tmp_path: Pa
     rig = bind(replace(motor.plant, parameters={**motor.plant.parameters, "tau_c": friction}))
     t_s = 1e-3 * np.arange(300)
     u_V = np.array([6.0, -4.0, 9.0, 2.0, -8.0])[(t_s / 0.06).astype(int)][:, None]
-    y = simulate(rig, t_s, at_rest(rig), u_V, substeps=4).y
+    y = simulate(rig, t_s, at_rest(rig), u_V, Conditions(substeps=4)).y
     log = RunLog(log_columns(motor.model), 1e-3, "open", t_s, u_V, np.asarray(y).reshape(len(t_s), -1))
     found = diagnose(motor, {"short": log}).diagnosis
     assert (found.verdict, *found.found) == ("gap", "shaft.coulomb")

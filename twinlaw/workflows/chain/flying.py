@@ -19,7 +19,7 @@ from sim.halving import StepError, halved, step_error
 from sim.kernel.law import is_kernel_s
 from sim.loop import Wired, fly, fly_law, steps_a_sample
 from sim.manoeuvres import Manoeuvre, flight, steps, stir
-from sim.simulate import simulate
+from sim.simulate import Conditions, simulate
 from sim.substeps import MOST_SUBSTEPS, fastest_rad_s, steps_a_stretch
 from sim.tracking import tracking
 from sim.wiring import wiring
@@ -64,7 +64,7 @@ def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
                     "check units and signs, or leave out a state that is so fast",
                 )
             error = step_error(bound, moved.t_s, moved.x0, moved.u, substeps=substeps)
-        run = simulate(bound, moved.t_s, moved.x0, moved.u, substeps=substeps, keep="y")
+        run = simulate(bound, moved.t_s, moved.x0, moved.u, Conditions(substeps=substeps, keep="y"))
     assert run.y is not None
     return RunLog(log_columns(bound.model), float(moved.t_s[1]), "open", moved.t_s, moved.u, run.y), error
 
