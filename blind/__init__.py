@@ -2,7 +2,7 @@
 
 from blind.calibration.calibrate import calibrate
 from blind.calibration.examples import family
-from blind.cases.make import make
+from blind.cases.make import Benchmark, make
 from blind.cases.mix import KINDS
 from blind.rigs.table import FIRST, RIGS
 from blind.scoring.score import Score, score, score_all
@@ -12,6 +12,7 @@ __all__ = [
     "FIRST",
     "KINDS",
     "RIGS",
+    "Benchmark",
     "Score",
     "calibrate",
     "family",

@@ -46,31 +46,33 @@ Made = dict[str, Any]  # "files": text by name, "truth": as JSON values
 Each = Callable[[Callable[[Order], Made], Sequence[Order]], Iterable[Made]]
 
 
-def make(
-    seed: int,
-    out: Path,
-    cases: int = 60,
-    kinds: Sequence[str] = KINDS,
-    plant: Path | None = None,
-    each: Each = map,
-    rig: str = FIRST,
-) -> Path:
-    """Write `cases` cases of some kinds with one kind of rig into the folder `out`, the same bytes for the same seed; returns cases.json.
+@dataclass(frozen=True)
+class Benchmark:
+    """What is asked for: so many `cases` of some kinds with one kind of rig, `plant`: from this file, from those of the rig's own plants if
+    None."""
 
-    `each` makes the cases, in their order, as `map` does. `plant`: the file to start from, that of the rig's own plants if None.
+    seed: int
+    cases: int = 60
+    kinds: Sequence[str] = KINDS
+    plant: Path | None = None
+    rig: str = FIRST
+
+
+def make(asked: Benchmark, out: Path, each: Each = map) -> Path:
+    """Write the cases of a benchmark into the folder `out`, the same bytes for the same one; returns cases.json.
+
+    `each` makes the cases, in their order, as `map` does.
 
     Layout: case-XXXX/ (plant.toml, train-1 and so on and hold-1 as .csv and .toml, README.md), cases.json with a commitment to each
     truth, sealed/truth.json. An earlier benchmark in `out` is replaced, as a whole and only when the new one is complete.
     Raises BadInput for a plant that the rig is not, an unknown kind or rig, a negative seed, an `out` that holds something else.
     """
-    if seed < 0:
-        raise BadInput("seed", "--seed", str(seed), "a number from 0 up", "choose another seed")
-    texts = _plant_texts(kinds_of_rig(rig), plant)
-    asked = [Order(seed, index, cases, tuple(kinds), "", rig, tuple(texts)) for index in range(1, max(cases, 1) + 1)]
+    if asked.seed < 0:
+        raise BadInput("seed", "--seed", str(asked.seed), "a number from 0 up", "choose another seed")
+    orders = _orders(asked)
     # Refuses what cannot be dealt before anything is flown.
-    _dealt(asked[0])
+    _dealt(orders[0])
     check_replaceable(out)
-    orders = [replace(order, plant=texts[_plant_of(order)]) for order in asked]
     work = _work_folder(out)
     try:
         truths = {}
@@ -78,7 +80,7 @@ def make(
             for file, content in made["files"].items():
                 write_atomic(work / order.name / file, content)
             truths[order.name] = truth_from_json(made["truth"])
-        public, opened = seal(truths, {name: salt_of(seed, name) for name in truths})
+        public, opened = seal(truths, {name: salt_of(asked.seed, name) for name in truths})
         write_atomic(work / TRUTH_FILE, opened)
         write_atomic(work / CASES_FILE, public)
         if out.exists():
@@ -88,6 +90,14 @@ def make(
     finally:
         shutil.rmtree(work, ignore_errors=True)
     return out / CASES_FILE
+
+
+def _orders(asked: Benchmark) -> list[Order]:
+    """One for each case; one at least, so that what cannot be dealt is refused."""
+    texts = _plant_texts(kinds_of_rig(asked.rig), asked.plant)
+    whole = Order(asked.seed, 1, asked.cases, tuple(asked.kinds), "", asked.rig, tuple(texts))
+    orders = [replace(whole, index=index) for index in range(1, max(asked.cases, 1) + 1)]
+    return [replace(order, plant=texts[_plant_of(order)]) for order in orders]
 
 
 def make_case(order: Order) -> Made:

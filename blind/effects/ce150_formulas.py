@@ -1,6 +1,6 @@
 """The library's formulas of the contract's table, each brought nearest to a rig's own over the samples that its flights went through.
 
-A rig's own formula is its term; where it gives none its formula is the library's.
+Where a rig gives no law of its own, its formula is the library's.
 """
 
 from collections.abc import Callable, Sequence
@@ -30,26 +30,33 @@ FULL_RAD_S = 600.0  # what the library's downwash refers the main rotor's speed 
 
 
 @dataclass(frozen=True, eq=False)
+class Law:
+    """A rig's own formula of an effect: its term (amplitude, shape, samples) -> (n,), and where a fit to that starts."""
+
+    term: Term
+    start: Start | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Sized:
-    """An effect of amplitude `a` (its field's unit) and a shape, at axis or rotor `index`; the rig's term (amplitude, shape, samples) ->
-    (n,), and where a fit to it starts."""
+    """An effect of amplitude `a` (its field's unit) and a shape, at axis or rotor `index`; the rig's own law of it."""
 
     a: float
     shape: Shape
     visited: Visited
     index: int
-    term: Term | None = None
-    start: Start | None = None
+    law: Law | None = None
 
     def own(self, a: float) -> Array:
         """The rig's term at an amplitude; raises ValueError where the rig gives none."""
-        if self.term is None:
-            raise ValueError("a rig's row gives no term, and the library's formula has to be fitted to one")
-        return self.term(a, self.shape, self.visited)
+        if self.law is None:
+            raise ValueError("a rig's row gives no law, and the library's formula has to be fitted to one")
+        return self.law.term(a, self.shape, self.visited)
 
     def starts(self, target: Array) -> Sequence[float]:
         """Where the fit to a target starts: at the amplitude, unless the rig says otherwise."""
-        return [self.a] if self.start is None else self.start(self.a, self.shape, target)
+        start = None if self.law is None else self.law.start
+        return [self.a] if start is None else start(self.a, self.shape, target)
 
 
 Formula = Callable[[Sized], Equivalents]
@@ -79,7 +86,7 @@ def saturation(e: Sized) -> Equivalents:
 
 def supply_sag(e: Sized) -> Equivalents:
     """u (1 - s load); term: the share of u that is lost."""
-    if e.term is None:
+    if e.law is None:
         return {"s": relative(e.a)}
     u, load = e.visited.u(e.index), e.visited.load
     return {"s": relative(scale_of(load * u, e.own(e.a) * u))}
@@ -94,7 +101,7 @@ def warm_up(e: Sized) -> Equivalents:
 
 def dry_rotor(e: Sized) -> Equivalents:
     """c sgn(omega)."""
-    if e.term is None:
+    if e.law is None:
         return {"c": relative(e.a)}
     return {"c": relative(scale_of(np.sign(e.visited.omega(e.index)), e.own(e.a)))}
 
@@ -110,7 +117,7 @@ def reversed_thrust(e: Sized) -> Equivalents:
     """r F_T for a tail that turns the other way; term: the share of the loss that is there at a speed."""
     back = e.visited.omega_T < -1.0
     share = 1.0
-    if e.term is not None and back.any():
+    if e.law is not None and back.any():
         force = e.visited.tail_thrust(e.visited.omega_T[back])
         share = scale_of(force, e.own(1.0)[back] * force)
     return {"r": Equivalent(1.0 + e.a * share, abs(e.a))}
@@ -161,12 +168,12 @@ def flexible_mode(omega_n_rad_s: float, zeta: float) -> Equivalents:
 
 def sensor_offset(e: Sized) -> Equivalents:
     """angle + offset."""
-    return {"offset": relative(e.a if e.term is None else float(e.own(e.a).mean()))}
+    return {"offset": relative(e.a if e.law is None else float(e.own(e.a).mean()))}
 
 
 def sensor_scale(e: Sized) -> Equivalents:
     """scale times angle; term: what is added at an error of 1."""
-    error = e.a if e.term is None else e.a * scale_of(e.visited.angle(e.index), e.own(1.0))
+    error = e.a if e.law is None else e.a * scale_of(e.visited.angle(e.index), e.own(1.0))
     return {"scale": Equivalent(1.0 + error, abs(error))}
 
 
@@ -192,12 +199,12 @@ def tail_coupling(e: Sized) -> Equivalents:
 def tilt(e: Sized) -> Equivalents:
     """m sin(phi - Phi_0); term: the share of it that is left at an elevation."""
     lever = np.sin(e.visited.phi - e.shape["tilt_rad"])
-    share = 1.0 if e.term is None else scale_of(lever, e.own(1.0) * lever)
+    share = 1.0 if e.law is None else scale_of(lever, e.own(1.0) * lever)
     return {"m": relative(e.a * share), "Phi_0": shape_only(e.shape["tilt_rad"], 0.5)}
 
 
 def gyroscopic(e: Sized) -> Equivalents:
     """K psi' omega_M sin(psi); term: what stands for the sine."""
     turned = e.visited.psi_dot * e.visited.omega_M
-    share = 1.0 if e.term is None else scale_of(turned * np.sin(e.visited.psi), turned * e.own(1.0))
+    share = 1.0 if e.law is None else scale_of(turned * np.sin(e.visited.psi), turned * e.own(1.0))
     return {"K": relative(e.a * share)}

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Unpack
 
 from blind.effects import ce150_formulas as formulas
-from blind.effects.ce150_formulas import Formula, Start, Term
+from blind.effects.ce150_formulas import Formula, Law
 from blind.effects.effect import Effect, Size
-from blind.effects.row import Judged, Traits, known, outside
+from blind.effects.row import Traits, known, outside
 
 # What the words in braces are for index 0 and 1.
 WORDS: tuple[Mapping[str, str], ...] = (
@@ -69,20 +69,18 @@ def in_table(
     name: str,
     size: Size,
     *indices: int,
-    term: Term | None = None,
-    start: Start | None = None,
-    equivalent: Judged | None = None,
+    law: Law | None = None,
     **traits: Unpack[Traits],
 ) -> Effect:
     """A rig's row of the contract's table: `name` as there, words in braces those of the first of `indices` (none: no pair).
 
-    `term`, `start`: the rig's own formula, see `Sized`; `equivalent`: instead of the table's formula.
+    `law`: the rig's own formula; `equivalent` stands in place of the table's.
     """
     entry = TABLE[name]
     words = WORDS[indices[0]] if indices else {}
     own: Traits = {**traits, "sensor": entry.sensor, "needs": entry.needs}
     told = (name.format(**words), entry.depends.format(**words))
-    return known(*told, size, entry.formula, *indices, term=term, start=start, equivalent=equivalent, **own)
+    return known(*told, size, entry.formula, *indices, law=law, **own)
 
 
 def outside_table(

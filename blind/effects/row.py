@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import TypedDict, Unpack
 
-from blind.effects.ce150_formulas import Formula, Sized, Start, Term
+from blind.effects.ce150_formulas import Formula, Law, Sized
 from blind.effects.draws import Source
 from blind.effects.effect import SCALAR, Effect, Shape, Size
 from blind.effects.equivalent import Equivalents
@@ -24,6 +24,7 @@ class Traits(TypedDict, total=False):
     needs: str
     hides: str
     loses_frames: bool
+    equivalent: Judged
 
 
 def known(
@@ -32,33 +33,31 @@ def known(
     size: Size,
     formula: Formula | None,
     *indices: int,
-    term: Term | None = None,
-    start: Start | None = None,
-    equivalent: Judged | None = None,
+    law: Law | None = None,
     twins: str = "",
     **traits: Unpack[Traits],
 ) -> Effect:
-    """An effect of the library, with its size there by its `formula`, for which `term` and `start` are the rig's own (see `Sized`), or by
-    `equivalent`; raises ValueError where neither is given."""
-    if formula is None and equivalent is None:
+    """An effect of the library, with its size there by its `formula`, for which `law` is the rig's own, or by `equivalent`; raises
+    ValueError where neither is given."""
+    if formula is None and "equivalent" not in traits:
         raise ValueError(f"{depends}: the table has no formula, and the rig's row gives no equivalent")
     signed, fixed = traits.get("signed", False), traits.get("fixed", {})
 
     def judged(m: float, shape: Shape, visited: Visited) -> Equivalents:
         assert formula is not None
         a = size.at(m) * shape["sign"] if signed else size.at(m)
-        return formula(Sized(a, {**shape, **fixed}, visited, indices[0] if indices else SCALAR, term, start))
+        return formula(Sized(a, {**shape, **fixed}, visited, indices[0] if indices else SCALAR, law))
 
+    own: Traits = {"equivalent": judged, **traits}
     return Effect(
         name=name,
         places=(name.partition(".")[0],),
         depends=depends,
         size=size,
         indices=indices or (SCALAR,),
-        equivalent=equivalent or judged,
         known=True,
         twins=tuple(twins.split()),
-        **traits,
+        **own,
     )
 
 

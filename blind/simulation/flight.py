@@ -47,31 +47,31 @@ class RunInputs:
         }
 
 
-def fly(
-    program: Program,
-    model: Model,
-    bearing: Bearing,
-    nominal: Rig,
-    control: Any,
-    inputs: RunInputs,
-    start: Array,
-    shadows: Sequence[Model],
-) -> Record:
-    """One closed-loop run from the state `start` (6,); each shadow runs freely for a second at a time, on the same bearings.
+@dataclass(frozen=True, eq=False)
+class Apparatus:
+    """What all runs of a rig have in common: its compiled program, its bearings, its controller `control` (the C structure control_t), and
+    `nominal`, what that takes the rig for."""
 
-    `nominal` is what the controller (the C structure control_t) takes the rig for.
-    """
-    ffi, lib = opened(program)
+    program: Program
+    bearing: Bearing
+    nominal: Rig
+    control: Any
+
+
+def fly(apparatus: Apparatus, model: Model, inputs: RunInputs, start: Array, shadows: Sequence[Model]) -> Record:
+    """One closed-loop run from the state `start` (6,); each shadow runs freely for a second at a time, on the same bearings."""
+    control = apparatus.control
+    ffi, lib = opened(apparatus.program)
     count, rows = len(shadows), len(inputs.steps)
     arrays = {name: np.zeros((rows, *shape)) for name, shape in ROW_SHAPES.items()}
     arrays["shadow"] = np.zeros((rows, count, 2))
     out = ffi.new("record_t *", {name: pointer(ffi, array) for name, array in arrays.items()})
     models = ffi.new("model_t[]", count + 1)
     for each, entry in zip(models, (model, *shadows), strict=True):
-        _fill(each, entry, bearing)
+        _fill(each, entry, apparatus.bearing)
     mode = ffi.new("unsigned char[]", [STARTS_FROM_SHOWN * s.placed + LOSES_FRAMES * s.loses for s in shadows])
     lib.fly(
-        models, ffi.new("rig_t *", nominal.fields()), control, ffi.new("inputs_t *", inputs.fields(ffi)),
+        models, ffi.new("rig_t *", apparatus.nominal.fields()), control, ffi.new("inputs_t *", inputs.fields(ffi)),
         pointer(ffi, start), count, models + 1, mode, round(1.0 / control.period_s), out,
     )  # fmt: skip
     log: dict[str, Any] = {name: array[inputs.settle :] for name, array in arrays.items()}

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blind import FIRST, make
+from blind import FIRST, Benchmark, make
 from blind.cases.make import Order, make_case
 from blind.cases.sealed import open_seal, truth_to_json
 from blind.rigs.first import lab as first_lab
@@ -16,7 +16,7 @@ from blind.rigs.first.pilot import make_pilot
 from blind.rigs.first.simulation import BRISTLES, FASTEST_RAD_S, PROGRAM
 from blind.rigs.second import lab as second_lab
 from blind.simulation.ce150 import Rig, load_rig
-from blind.simulation.flight import RunInputs, fly
+from blind.simulation.flight import Apparatus, RunInputs, fly
 from blind.simulation.record import Model, Record
 from blind.simulation.rest import start_state
 from tests.soak import SOAK
@@ -49,7 +49,7 @@ def lively_flight(seconds: float, seed: int = 3) -> RunInputs:
 @pytest.fixture(scope="session")
 def flown(rig: Rig) -> Callable[..., Record]:
     """Fly the nominal rig with settings of effects; shadow 0 has them, shadow 1 has not."""
-    pilot = make_pilot(rig, 1.0)
+    apparatus = Apparatus(PROGRAM, BRISTLES, rig, make_pilot(rig, 1.0))
 
     def run(
         flight: RunInputs, settings: Settings, *, placed: bool = False, changes: Mapping[str, float] | None = None
@@ -57,7 +57,7 @@ def flown(rig: Rig) -> Callable[..., Record]:
         own = rig.with_values({name: np.array([value]) for name, value in (changes or {}).items()})
         model = Model(own, settings)
         start = start_state(rig, *flight.reference[0], FASTEST_RAD_S)
-        return fly(PROGRAM, model, BRISTLES, rig, pilot, flight, start, [model, Model(rig, {}, placed=placed)])
+        return fly(apparatus, model, flight, start, [model, Model(rig, {}, placed=placed)])
 
     return run
 
@@ -90,7 +90,7 @@ def _made(paths: pytest.TempPathFactory, rig: str, kinds: tuple[str, ...], seed:
     out = paths.mktemp(rig) / "cases"
     with ThreadPoolExecutor() as pool, pytest.MonkeyPatch.context() as patch:
         shorten(patch)
-        make(seed, out, len(kinds), kinds, each=pool.map, rig=rig)
+        make(Benchmark(seed, len(kinds), kinds, rig=rig), out, pool.map)
     return out
 
 

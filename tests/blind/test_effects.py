@@ -12,7 +12,7 @@ from blind.rigs.first.catalogue import CATALOGUE
 from blind.rigs.first.pilot import make_pilot
 from blind.rigs.first.simulation import BRISTLES, FASTEST_RAD_S, PROGRAM
 from blind.simulation.ce150 import Rig
-from blind.simulation.flight import fly
+from blind.simulation.flight import Apparatus, fly
 from blind.simulation.record import Model, Record
 from blind.simulation.rest import start_state
 from tests.blind.conftest import calm_flight, lively_flight
@@ -211,7 +211,7 @@ def test_every_effect_is_felt(rig: Rig) -> None:
     inputs, plain = lively_flight(5.0, 4), Model(rig, {})
     start = start_state(rig, *inputs.reference[0], FASTEST_RAD_S)
     shadows = [plain, *(Model(rig, large(effect), placed=effect.sensor) for effect in SIMULATED)]
-    record = fly(PROGRAM, plain, BRISTLES, rig, make_pilot(rig, 1.0), inputs, start, shadows)
+    record = fly(Apparatus(PROGRAM, BRISTLES, rig, make_pilot(rig, 1.0)), plain, inputs, start, shadows)
     moved = np.abs(record.shadow[:, 1:] - record.shadow[:, :1]).max(axis=(0, 2))
     assert not [effect.name for effect, most in zip(SIMULATED, moved, strict=True) if most < 1e-4]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blind import KINDS, make
+from blind import KINDS, Benchmark, make
 from blind.cases.mix import plans
 from blind.cases.sealed import open_seal
 from blind.rigs.bench import Plan, RigKind
@@ -110,12 +110,12 @@ def test_bad_requests_are_refused_and_leave_nothing_behind(tmp_path: Path) -> No
     plant = tmp_path / "other.toml"
     plant.write_text('schema = "plant/1"\nmodel = "emps"\n')
     for arguments, named in (
-        ((1, tmp_path / "x", 5, ("odd",)), "odd"),
-        ((1, tmp_path / "x", 0), "--cases"),
-        ((-1, tmp_path / "x", 5), "--seed"),
-        ((1, foreign, 5), "foreign"),
-        ((1, tmp_path / "x", 5, KINDS, plant), "ce150"),
-        ((1, tmp_path / "x", 5, KINDS, tmp_path / "none.toml"), "none.toml"),
+        ((Benchmark(1, 5, ("odd",)), tmp_path / "x"), "odd"),
+        ((Benchmark(1, 0), tmp_path / "x"), "--cases"),
+        ((Benchmark(-1, 5), tmp_path / "x"), "--seed"),
+        ((Benchmark(1, 5), foreign), "foreign"),
+        ((Benchmark(1, 5, KINDS, plant), tmp_path / "x"), "ce150"),
+        ((Benchmark(1, 5, KINDS, tmp_path / "none.toml"), tmp_path / "x"), "none.toml"),
     ):
         with pytest.raises(BadInput, match=named):
             make(*arguments)

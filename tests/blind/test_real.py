@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blind import make
+from blind import Benchmark, make
 from blind.cases.make import Order, make_case
 from blind.cases.sealed import open_seal, truth_to_json
 from blind.cases.severity import SLOPE_STEP_S
@@ -264,7 +264,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("real") / "cases"
     with pytest.MonkeyPatch.context() as patch:
         shorten(patch)
-        make(SEED, out, 2 * len(PLANTS), ("nominal", "single"), rig="real")
+        make(Benchmark(SEED, 2 * len(PLANTS), ("nominal", "single"), rig="real"), out)
     return out
 
 
@@ -317,7 +317,7 @@ def test_a_case_comes_out_the_same_when_it_is_made_again(folder: Path) -> None:
 def test_a_plant_file_that_is_given_decides_on_the_plant(tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         shorten(patch)
-        make(3, tmp_path / "x", 1, ("nominal",), PLANTS[-1].path, rig="real")
+        make(Benchmark(3, 1, ("nominal",), PLANTS[-1].path, "real"), tmp_path / "x")
     assert f'plant = "{PLANTS[-1].name}"' in (tmp_path / "x/case-0001/hold-1.toml").read_text()
 
 

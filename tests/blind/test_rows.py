@@ -105,5 +105,5 @@ def test_rows_that_contradict_one_another_are_refused() -> None:
 
 def test_a_formula_that_has_to_be_fitted_asks_for_the_rigs_own() -> None:
     samples = Visited(*np.ones((9, 5)), gravity_Nm=1.0, tail_thrust=lambda w: w)
-    with pytest.raises(ValueError, match="no term"):
+    with pytest.raises(ValueError, match="no law"):
         dead_zone(Sized(0.1, {}, samples, 0))

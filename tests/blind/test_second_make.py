@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import blind
-from blind import make
+from blind import Benchmark, make
 from blind.cases.sealed import open_seal
 from records.errors import BadInput
 from records.log import RunLog, load_log
@@ -93,7 +93,7 @@ def test_a_case_comes_out_the_same_when_it_is_made_again(second_folder: Path) ->
 
 def test_an_unknown_kind_of_rig_is_refused_and_nothing_stays_behind(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=r"--rig.*'third'.*first, second, real"):
-        make(1, tmp_path / "x", 5, rig="third")
+        make(Benchmark(1, 5, rig="third"), tmp_path / "x")
     assert not list(tmp_path.iterdir())
 
 
@@ -104,7 +104,7 @@ def test_the_command_line_hands_on_which_kind_of_rig_is_asked_for(
     assert main([*words, "--rig", "third"]) == 2
     assert "first, second, real" in capsys.readouterr().err
     asked = []
-    monkeypatch.setattr(blind, "make", lambda *_, rig, **__: asked.append(rig))
-    for given in ([], ["--rig", "first"], ["--rig", "second"], ["--rig", "real"]):
-        assert main([*words, *given]) == 0
+    monkeypatch.setattr(blind, "make", lambda given, *_: asked.append(given.rig))
+    for rig in ([], ["--rig", "first"], ["--rig", "second"], ["--rig", "real"]):
+        assert main([*words, *rig]) == 0
     assert asked == ["first", "first", "second", "real"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from blind import make
+from blind import Benchmark, make
 from diagnosis.diagnose import diagnose
 from diagnosis.result import Result
 from tests.diagnosis.arm import arm, arm_log
@@ -109,7 +109,7 @@ def sealed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     def asked(family: str) -> Path:
         if family not in kept:
             out = tmp_path_factory.mktemp(family) / "cases"
-            make(SEALED[family], out, 1, ("single",), rig=family)
+            make(Benchmark(SEALED[family], 1, ("single",), rig=family), out)
             kept[family] = out / "case-0001"
         return kept[family]
 

@@ -111,8 +111,8 @@ def run(chosen: argparse.Namespace) -> int:
 def _make(chosen: argparse.Namespace) -> int:
     kept = chosen.out.parent / f".{chosen.out.name}.unfinished"
     each = sweeping.each("flown", sweeping.crew_of(chosen), kept, lambda order: order.name)
-    kinds = tuple(chosen.kinds.split(","))
-    path = blind.make(chosen.seed, chosen.out, chosen.cases, kinds, chosen.plant, each=each, rig=chosen.rig)
+    asked = blind.Benchmark(chosen.seed, chosen.cases, tuple(chosen.kinds.split(",")), chosen.plant, chosen.rig)
+    path = blind.make(asked, chosen.out, each)
     shutil.rmtree(kept, ignore_errors=True)
     print(json.dumps({"cases": str(path)}) if chosen.json else f"{path}  {chosen.cases} cases, seed {chosen.seed}")
     return 0

@@ -14,7 +14,7 @@ from blind.rigs.first.pilot import make_pilot
 from blind.rigs.first.simulation import BRISTLES, FASTEST_RAD_S, PERIOD_S, PROGRAM, ROW_STEPS
 from blind.simulation import flight
 from blind.simulation.ce150 import Rig, draw_rig, stated_zero
-from blind.simulation.flight import RunInputs
+from blind.simulation.flight import Apparatus, RunInputs
 from blind.simulation.record import Loss, Model, Record
 from blind.simulation.rest import start_state
 
@@ -46,7 +46,7 @@ class FirstLab:
         """From rest at the first reference."""
         psi, phi = inputs.reference[0]
         start = start_state(self.nominal, float(psi), float(phi), FASTEST_RAD_S)
-        record = flight.fly(PROGRAM, model, BRISTLES, self.nominal, self.pilot, inputs, start, shadows)
+        record = flight.fly(Apparatus(PROGRAM, BRISTLES, self.nominal, self.pilot), model, inputs, start, shadows)
         # Rows on a stop over steps of all rows: a hundredth of the share. Kept, as it decided which draws became cases.
         return replace(record, stop_share=record.stop_share / ROW_STEPS)
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from blind.rigs.bench import FILTERED, Bench, Columns, Logging, Plan
 from blind.rigs.real import operators
 from blind.rigs.real.manoeuvre import CLOSED, OPEN, drawn
+from blind.rigs.real.orders import Asked
 from blind.rigs.real.plant import RealPlant, draw_stated, draw_true
 from blind.rigs.real.plants import CE150
 from blind.rigs.real.simulation import ARC_TANGENT, DAHL, LUGRE, Body, RealInputs, fly, predict
@@ -85,11 +86,14 @@ class RealLab:
         settle = round(SETTLE_S / style.period_s)
         t_s = np.asarray(np.arange(settle + style.rows) * style.period_s, float)
         axes = len(self.plant.axes)
-        asked = np.zeros((len(t_s), 2))
+        wishes = np.zeros((len(t_s), 2))
         for i in range(axes):
-            asked[:, i] = self.lively * drawn(CLOSED if style.closed else OPEN, rng, t_s)
-        aim = operators.closed if style.closed else operators.opened
-        orders = aim(self.plant, self.nominal, self.true, asked, style.locked, t_s, rng)
+            wishes[:, i] = self.lively * drawn(CLOSED if style.closed else OPEN, rng, t_s)
+        asked = Asked(wishes, t_s, style.locked)
+        if style.closed:
+            orders = operators.closed(self.plant, self.nominal, asked, rng)
+        else:
+            orders = operators.opened(self.plant, self.true, asked, rng)
         range_V = [self.plant.range_V(self.nominal, i) for i in range(len(self.plant.inputs))]
         bits = [(high - low) / CONVERTER_STEPS if style.coarse else 1e-12 for low, high in range_V]
         return RealInputs(

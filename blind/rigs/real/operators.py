@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from numpy.random import Generator
 
 from blind.rigs.real import one_axis, two_axes
-from blind.rigs.real.orders import Array, Asked, Held, Orders
+from blind.rigs.real.orders import Asked, Orders
 from blind.rigs.real.plant import RealPlant
 from blind.simulation.ce150 import Rig
 
@@ -20,18 +20,14 @@ CLOSED_SHARE = {
 }
 
 
-def opened(
-    plant: RealPlant, nominal: Rig, true: Rig, wishes: Array, locked: Held, t_s: Array, rng: Generator
-) -> Orders:
+def opened(plant: RealPlant, true: Rig, asked: Asked, rng: Generator) -> Orders:
     """Commands made beforehand, about a trim that the operator found on the rig itself."""
-    return OPEN[plant.name](true, Asked(wishes, t_s, locked), rng)
+    return OPEN[plant.name](true, asked, rng)
 
 
-def closed(
-    plant: RealPlant, nominal: Rig, true: Rig, wishes: Array, locked: Held, t_s: Array, rng: Generator
-) -> Orders:
+def closed(plant: RealPlant, nominal: Rig, asked: Asked, rng: Generator) -> Orders:
     """References, and a controller that knows the rig as it is stated."""
-    return CLOSED[plant.name](nominal, Asked(wishes, t_s, locked), rng)
+    return CLOSED[plant.name](nominal, asked, rng)
 
 
 Operator = Callable[[Rig, Asked, Generator], Orders]

@@ -26,7 +26,7 @@ from blind.rigs.second.simulation import (
 from blind.rigs.second.stated import draw_stated, draw_true
 from blind.simulation import flight
 from blind.simulation.ce150 import Rig, stated_zero
-from blind.simulation.flight import Bearing, RunInputs
+from blind.simulation.flight import Apparatus, Bearing, RunInputs
 from blind.simulation.record import Loss, Model, Record
 from blind.simulation.rest import start_state
 
@@ -92,7 +92,8 @@ class SecondLab:
         """From rest at the first reference."""
         psi, phi = inputs.reference[0]
         start = start_state(self.nominal, float(psi), float(phi), FASTEST_RAD_S)
-        return flight.fly(PROGRAM, model, self.bearing, self.nominal, self.control, inputs, start, shadows)
+        apparatus = Apparatus(PROGRAM, self.bearing, self.nominal, self.control)
+        return flight.fly(apparatus, model, inputs, start, shadows)
 
     def predict(self, rig: Rig, record: Record, step_s: float) -> Array:
         """Free runs of an effect-free rig on this rig's bearings."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from blind.cases.make import make
+from blind.cases.make import Benchmark, make
 from records.errors import BadInput
 from records.log import save_log
 from tests.blind.conftest import shorten
@@ -121,7 +121,7 @@ def test_a_sealed_case_is_the_same_from_a_process_and_goes_on(
     shorten(monkeypatch)
     if not SOAK:  # from processes the same comes in tests/jobs/test_run.py
         works_here(monkeypatch)
-    make(6, tmp_path / "here", 1, ("nominal",))
+    make(Benchmark(6, 1, ("nominal",)), tmp_path / "here")
     words = ["blind", "make", "--seed", "6", "--cases", "1", "--kinds", "nominal", "--out", str(tmp_path / "there")]
     with monkeypatch.context() as patch:
         patch.setattr(sys.modules["blind.cases.make"], "seal", interrupt)
