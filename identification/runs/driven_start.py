@@ -15,7 +15,7 @@ from identification.runs.run import Carried
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.model import Model
-from sim.runs.sensitivities import sensitivities
+from sim.runs.sensitivities import sensitivities, whole
 
 Array = NDArray[np.float64]
 FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
@@ -100,7 +100,7 @@ def _left_of_missing_rows(driven: BoundPlant, t_s: Array, u: Array, x0: Array, b
 
 
 def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
-    return sensitivities(driven.model, t_s, u, driven.p, (slice(0, t_s.size),), x0[None, :], ()).x
+    return sensitivities(driven.model, whole(t_s, u, x0), driven.p, ()).x
 
 
 def _largest_inputs(bound: BoundPlant) -> Array:

@@ -1,13 +1,13 @@
 """Predicted readings of a run and their exact derivatives by parameters and by the starts of its windows."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from identification.runs.run import Run, coefficient_names, inputs_of, known_names, offset_names, parameters_of
-from sim.runs.sensitivities import Sensitivities, sensitivities
+from sim.runs.sensitivities import Given, Sensitivities, sensitivities, whole
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,8 @@ def _readings(run: Run, p: Array, u: Array, columns: tuple[str, ...]) -> tuple[A
     """Readings (m,) and their slopes (m, columns + free)."""
     starts = tuple(f"x0.{state}" for state in run.free)
     if run.carried is None:
-        motion = sensitivities(run.bound.model, run.t_s, u, p, run.windows, run.x0, columns + starts, run.substeps)
+        given = Given(run.t_s, u, run.windows, run.x0, run.substeps)
+        motion = sensitivities(run.bound.model, given, p, columns + starts)
     else:
         motion = _with_carried(run, p, u, columns, starts)
     y, slopes = (motion.y, motion.dy) if run.observed is None else _observed(run, p, u, motion)
@@ -67,15 +68,15 @@ def _with_carried(run: Run, p: Array, u: Array, columns: tuple[str, ...], starts
     own = coefficient_names(part)
     inputs = [model.inputs.index(variable) for variable in part.inputs]
     values = np.ascontiguousarray(p[[known.index(name) for name in own]])
-    whole = (slice(0, run.t_s.size),)
+    before = replace(whole(run.t_s, u[:, inputs], run.carried.x0), substeps=run.substeps)
     wanted = tuple(name for name in columns if name in own or name in offset_names(part))
-    carried = sensitivities(part, run.t_s, u[:, inputs], values, whole, run.carried.x0[None, :], wanted, run.substeps)
+    carried = sensitivities(part, before, values, wanted)
     x0 = run.x0.copy()
     x0[:, [model.states.index(state) for state in part.states]] += carried.x[run.begins]
     through = tuple(f"x0.{state}" for state in part.states)
     kept = columns + starts
     every = (*kept, *(name for name in through if name not in kept))
-    motion = sensitivities(model, run.t_s, u, p, run.windows, x0, every, run.substeps)
+    motion = sensitivities(model, Given(run.t_s, u, run.windows, x0, run.substeps), p, every)
     slopes = motion.dy[:, :, : len(kept)].copy()
     places, passing = [columns.index(name) for name in wanted], [every.index(name) for name in through]
     for rows, begin in zip(run.windows, run.begins, strict=True):

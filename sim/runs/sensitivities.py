@@ -28,32 +28,41 @@ class Sensitivities:
     x: Array
 
 
-def sensitivities(
-    model: Model,
-    t_s: Array,
-    u: Array,
-    p: Array,
-    windows: Sequence[slice],
-    x0: Array,
-    columns: tuple[str, ...],
-    substeps: int = 1,
-) -> Sensitivities:
-    """Integrate dS/dt = A S + D, S = dx/d(columns), with the run itself, from x0 (windows, states) at the first row of each window.
+@dataclass(frozen=True, eq=False)
+class Given:
+    """What is run: t_s (n,), u (n, inputs) held, `windows` of their rows, each from its own row of x0 (windows, states), in `substeps`
+    Runge-Kutta steps per sample."""
 
-    t_s (n,), u (n, inputs) held, p (parameters,), `substeps` Runge-Kutta steps per sample; rows in no window are left unset. A gain
-    multiplies and an offset adds to an input before its limits; at a limit their derivative is 0. Sticking, breaking away and stops are
-    carried to first order (the instants of events move with the columns). Raises BadInput for a column that the model does not know, or
-    for more than 128, and for arrays that do not fit the model.
+    t_s: Array
+    u: Array
+    windows: Sequence[slice]
+    x0: Array
+    substeps: int = 1
+
+
+def whole(t_s: Array, u: Array, x0: Array) -> Given:
+    """One window over all rows, from x0 (states,)."""
+    return Given(t_s, u, (slice(0, t_s.size),), x0[None, :])
+
+
+def sensitivities(model: Model, given: Given, p: Array, columns: tuple[str, ...]) -> Sensitivities:
+    """Integrate dS/dt = A S + D, S = dx/d(columns), with the run itself, under the parameters p (parameters,).
+
+    Rows in no window are left unset. A gain multiplies and an offset adds to an input before its limits; at a limit their derivative is
+    0. Sticking, breaking away and stops are carried to first order (the instants of events move with the columns). Raises BadInput for a
+    column that the model does not know, or for more than 128, and for arrays that do not fit the model.
     """
-    _check(model, {"u": (u, (t_s.size, len(model.inputs))), "x0": (x0, (len(windows), len(model.states)))}, columns)
+    t_s, u, x0 = given.t_s, given.u, given.x0
+    shapes = {"u": (t_s.size, len(model.inputs)), "x0": (len(given.windows), len(model.states))}
+    _check(model, {"u": (u, shapes["u"]), "x0": (x0, shapes["x0"])}, columns)
     if not model.states:  # a balance: all that counts is in its observation
         none = np.zeros((t_s.size, 0))
         return Sensitivities(columns, none, np.zeros((t_s.size, 0, len(columns))), none)
     y = np.empty((t_s.size, len(model.outputs)))
     dy, x = np.empty((*y.shape, len(columns))), np.empty((t_s.size, len(model.states)))
     rows = {"t_s": t_s, "input": np.ascontiguousarray(u), "y": y, "dy": dy, "x": x}
-    request, _kept = _request(model, p, columns, substeps)
-    _run(kernel(model), request, rows, windows, np.ascontiguousarray(x0))
+    request, _kept = _request(model, p, columns, given.substeps)
+    _run(kernel(model), request, rows, given.windows, np.ascontiguousarray(x0))
     return Sensitivities(columns, y, dy, x)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sim.bind import BoundPlant
-from sim.runs.sensitivities import Sensitivities, sensitivities
+from sim.runs.sensitivities import Sensitivities, sensitivities, whole
 from sim.start import start_state
 
 
@@ -11,4 +11,4 @@ def slopes(
     bound: BoundPlant, t_s: np.ndarray, u: np.ndarray, x0: np.ndarray, columns: tuple[str, ...]
 ) -> Sensitivities:
     """One window over all rows, with the plant's own parameters; states of effects that x0 lacks begin at rest."""
-    return sensitivities(bound.model, t_s, u, bound.p, (slice(0, t_s.size),), start_state(bound, x0)[None, :], columns)
+    return sensitivities(bound.model, whole(t_s, u, start_state(bound, x0)), bound.p, columns)
