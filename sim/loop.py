@@ -63,15 +63,14 @@ def fly(
     table_digest: str | None = None,
     arithmetic: str | None = None,
     substeps: int | None = None,
-    resolution: Array | None = None,
 ) -> RunLog:
     """Fly a manoeuvre: at each t_k measure through the encoders, step the controller, hold its inputs until t_(k+1).
 
     Raises VerificationFailed when the controller commands what is not a number, BadInput when the plant's equations give none.
     `table_digest` names the table that flies, `arithmetic` in which its law computes, `substeps` the integration steps a sample, by
-    default as many as the plant needs, `resolution` (outputs,) the encoders' steps, by default the plant file's.
+    default as many as the plant needs.
     """
-    plant = SteppedPlant(bound, manoeuvre.x0, float(manoeuvre.t_s[0]), resolution=resolution)
+    plant = SteppedPlant(bound, manoeuvre.x0, float(manoeuvre.t_s[0]))
     y, u = np.empty(manoeuvre.reference_rad.shape), np.empty((manoeuvre.t_s.size, len(bound.model.inputs)))
     controller.reset(*plant.measured())
     for k, reference in enumerate(manoeuvre.reference_rad.tolist()):
