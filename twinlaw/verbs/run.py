@@ -6,7 +6,7 @@ Loops other than the helicopter's have pins where the plant file's section [boar
 
 import argparse
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 from records.files import remove_all, write_atomic
 from records.log import save_log
@@ -62,18 +62,11 @@ def run(chosen: argparse.Namespace) -> int:
     demand(verification)
     flight = _flown(designed, chosen)
     save_log(out / "run.csv", flight.log)
-    why = cause(designed.bound, designed.table, chosen.arithmetic, flight.tracking)
-    page = run_page(
-        designed.bound.plant.name,
-        designed.report,
-        verification,
-        image.sizes,
-        flight,
-        why,
-        roll_off_trade(designed),
-    )
+    flight = replace(flight, cause=cause(designed.bound, designed.table, chosen.arithmetic, flight.tracking))
+    name, trade = designed.bound.plant.name, roll_off_trade(designed)
+    page = run_page(name, designed.report, verification, image.sizes, flight, trade)
     write_atomic(out / "report.html", page_text(page))
-    _tell(designed, verification, image, flight, why, chosen)
+    _tell(designed, verification, image, flight, chosen)
     return 0
 
 
@@ -82,7 +75,6 @@ def _tell(
     verification: Verification,
     image: FirmwareImage,
     flight: ChainFlight,
-    why: str,
     chosen: argparse.Namespace,
 ) -> None:
     """Each stage's figures, for a program where it asks."""
@@ -90,7 +82,7 @@ def _tell(
     if chosen.json:
         facts = {"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}
         facts |= {"design": design_facts(designed.report), "verification": json.loads(verification_text(verification))}
-        facts |= {"left": list(left(flight.tracking)), "cause": why, **tracking_facts(flight.tracking)}
+        facts |= {"left": list(left(flight.tracking)), "cause": flight.cause, **tracking_facts(flight.tracking)}
         facts |= {"quality": quality_facts(flight_quality(flight.tracking)), "sizes": asdict(image.sizes)}
         print(json.dumps(facts))
         return
@@ -102,7 +94,7 @@ def _tell(
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
     print()
-    if why:
-        print(f"{quality_told(flight_quality(flight.tracking), why, gone)}\n")
+    if flight.cause:
+        print(f"{quality_told(flight_quality(flight.tracking), flight.cause, gone)}\n")
     print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")

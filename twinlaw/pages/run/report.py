@@ -48,10 +48,9 @@ def run_page(
     verification: Verification,
     sizes: ImageSizes,
     flight: ChainFlight,
-    cause: str,
     trade: Sequence[TradePoint],
 ) -> Page:
-    """The whole page: the flight of the image, its verification, and the design; `cause` is why it is not green, "" where it is."""
+    """The whole page: the flight of the image, its verification, and the design."""
     failures = verification.failures
     quality = flight_quality(flight.tracking, [flag(text, Colour.RED) for text in failures])
     verdict = "Every check holds, and the firmware image has flown." if not failures else "; ".join(failures)
@@ -59,7 +58,7 @@ def run_page(
         title=f"{plant}: from its equations to a flight of the firmware",
         verdict=verdict,
         colour=quality.colour,
-        why=quality_told(quality, cause),
+        why=quality_told(quality, flight.cause),
         facts=(("Controller table", verification.table_digest),),
         sections=(
             _flight(flight, report.loops),
