@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from identification.envelope.criteria import Match, flights_passed, matches
 from identification.envelope.flights.flight import OUTPUTS, STATES, Deviations, one_by_one
-from identification.envelope.flights.starts import NONE, Starts
+from identification.envelope.flights.starts import Starts
 from identification.envelope.output_equation.outputs import Equation
 from identification.envelope.state_equation.free_run import Model, one_step
 from identification.envelope.state_equation.initial_state import Tuned, as_measured, automatic, by_hand, over_grid
@@ -48,23 +48,26 @@ def margins_of(mission: str) -> tuple[Array, Array]:
     return np.array([MARGINS[mission][name] for name in STATES]), np.array([MARGINS[mission][name] for name in OUTPUTS])
 
 
-def check(
-    name: str,
-    mission: str,
-    data: Deviations,
-    open_loop: Model,
-    model: Model,
-    ways: Mapping[str, Equation],
-    starts: Starts = NONE,
-) -> Check:
-    """Try `open_loop` one step ahead and `model` in free runs, tuned flight by flight."""
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """What is tried: `open_loop` one step ahead, `model` in free runs, its accelerations by output equation in several `ways`, and starts
+    that were typed in."""
+
+    open_loop: Model
+    model: Model
+    ways: Mapping[str, Equation]
+    starts: Starts
+
+
+def check(name: str, mission: str, data: Deviations, tried: Tried) -> Check:
+    """Try a model on flights, tuned flight by flight."""
     margins_x, margins_y = margins_of(mission)
     period_s = data.sample_period_s
-    tuned = _tuned(model, data, margins_x, starts)
+    tuned = _tuned(tried.model, data, margins_x, tried.starts)
     x = {how: np.stack([flight.x for flight in flights]) for how, flights in tuned.items()}
-    y = {way: equation(data, data.x) for way, equation in ways.items()}
-    y_overall = {way: equation(data, x[FINAL]) for way, equation in ways.items()}
-    ahead, trim = one_step(open_loop, data), data.trim[:, None, 4:12]
+    y = {way: equation(data, data.x) for way, equation in tried.ways.items()}
+    y_overall = {way: equation(data, x[FINAL]) for way, equation in tried.ways.items()}
+    ahead, trim = one_step(tried.open_loop, data), data.trim[:, None, 4:12]
     start = {how: np.stack([flight.start for flight in flights]) + trim[:, 0] for how, flights in tuned.items()}
     return Check(
         name, mission, data, start, x, y, y_overall,

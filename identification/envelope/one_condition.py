@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.envelope.check import Check, check, margins_of
+from identification.envelope.check import Check, Tried, check, margins_of
 from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import Flight, joined
 from identification.envelope.flights.shortcomings import poor
@@ -92,13 +92,12 @@ def interpolated(order: OrderBetween) -> dict[str, Any]:
     """The plain form of an Interpolated; raises BadInput for flights that cannot be joined."""
     data, mission = joined(order.flights), order.flights[0].mission
 
-    def tried(model: GlobalModel) -> Check:
-        return check(
-            order.condition.name, mission, data, model.state, model.state, {"linear": model.output}, order.starts
-        )
+    def checked(model: GlobalModel) -> Check:
+        tried = Tried(model.state, model.state, {"linear": model.output}, order.starts)
+        return check(order.condition.name, mission, data, tried)
 
     found: dict[str, Any] = plain(
-        Interpolated(order.condition, order.between, tried(order.between), tried(order.nearest))
+        Interpolated(order.condition, order.between, checked(order.between), checked(order.nearest))
     )
     return found
 
@@ -117,11 +116,12 @@ def identify(
     training = optimise(open_loop, data, margins_x)
     ways, trained = equations(data, margins_y)
     assert isinstance(ways["linear"], Linear)
-    checks = [check(f"{condition.name} identification", mission, data, open_loop, training.model, ways, starts)]
+    tried = Tried(open_loop, training.model, ways, starts)
+    checks = [check(f"{condition.name} identification", mission, data, tried)]
     for flight in flights:
         if flight.use == "validation":
             alone = joined([flight])
-            checks.append(check(flight.name, flight.mission, alone, open_loop, training.model, ways, starts))
+            checks.append(check(flight.name, flight.mission, alone, tried))
     model = GlobalModel(training.model, ways["linear"])
     return ConditionResult(
         condition, poor(mine, data), row, potentials, open_loop, training, trained, model, tuple(checks)

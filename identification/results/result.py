@@ -120,21 +120,15 @@ def identification(
     factors = interval_factors(stage for _, stage in stages)
     began = _begun(stages) if begun is None else begun
     loose = _loose_sds(stages, belief)
-    estimates = tuple(
-        _estimated(
-            name,
-            began[name],
-            stated[name],
-            belief,
-            factors.get(name, NORMAL),
-            (signs or {}).get(name, "any"),
-            loose[name],
-        )
-        for name in belief.names
-    )
-    found = tuple(_aid(name, began[name], part, interval_factor(dof)) for part, dof in aids for name in part.names)
+
+    def estimated(name: str) -> Estimated:
+        file = _Stated(*stated[name], (signs or {}).get(name, "any"))
+        return _estimated(name, began[name], file, belief, factors.get(name, NORMAL), loose[name])
+
+    estimates = tuple(map(estimated, belief.names))
+    aided = tuple(_aid(name, began[name], part, interval_factor(dof)) for part, dof in aids for name in part.names)
     told = with_belief(plant, belief, [entry.name for entry in estimates if entry.identified])
-    return Identification(told, estimates, belief, tuple(stages), found)
+    return Identification(told, estimates, belief, tuple(stages), aided)
 
 
 def _begun(stages: Sequence[tuple[Data, Estimate]]) -> dict[str, float]:
@@ -170,19 +164,27 @@ def interval(value: float, reach: float, sign: str = "any") -> tuple[float, floa
     return value / factor, value * factor
 
 
-def _estimated(
-    name: str, start: float, stated: tuple[float, float, str], belief: Belief, factor: float, sign: str, loose_sd: float
-) -> Estimated:
-    """`stated` are value, sd and unit of the plant file; what it states as 0 has no size by which to be called poor.
+@dataclass(frozen=True)
+class _Stated:
+    """What the plant file says of a coefficient, and its model of the sign."""
+
+    value: float
+    sd: float
+    unit: str
+    sign: str
+
+
+def _estimated(name: str, start: float, stated: _Stated, belief: Belief, factor: float, loose_sd: float) -> Estimated:
+    """What is kept of both; what the plant file states as 0 has no size by which to be called poor.
 
     `loose_sd` is the sd had it not been given a size.
     """
-    before, before_sd, unit = stated
     value, sd = _told(name, belief)
-    told = factor * max(sd, loose_sd) < thresholds.FARTHEST * max(abs(before), abs(value), before_sd) or before == 0.0
-    kept, kept_sd, reach = (value, sd, factor) if told else (before, before_sd, NORMAL)
-    lower, upper = interval(kept, reach * kept_sd, sign)
-    return Estimated(name, unit, start, kept, kept_sd, lower, upper, told, value, sd if told else max(sd, loose_sd))
+    loose_sd, size = max(sd, loose_sd), max(abs(stated.value), abs(value), stated.sd)
+    told = factor * loose_sd < thresholds.FARTHEST * size or stated.value == 0.0
+    kept, kept_sd, reach = (value, sd, factor) if told else (stated.value, stated.sd, NORMAL)
+    lower, upper = interval(kept, reach * kept_sd, stated.sign)
+    return Estimated(name, stated.unit, start, kept, kept_sd, lower, upper, told, value, sd if told else loose_sd)
 
 
 def _aid(name: str, start: float, belief: Belief, factor: float) -> Estimated:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,10 +60,17 @@ def fits_of_logs(
     first, begun, searched = _coarse(coarse, names, ranges, asked)
     reached = dict(zip(widened(asked.before, names, {})[0], first.theta.tolist(), strict=True))
     start = {name: reached[name] for name in names}
-    from_there = partial(_fitted, bound, logs, coarse, ranges, asked)
 
     def fitted(length_s: float, start: Mapping[str, float]) -> Estimate:
-        return replace(from_there(length_s, start), start=begun, searched=searched)
+        """The coefficients of `start` by windows of `length_s`, in as many steps a sample as the short ones needed."""
+        closer = ranges | {name: replace(ranges[name], start=value) for name, value in start.items()}
+        runs = tuple(
+            replace(run_of(bound, log, name, length_s), substeps=short.substeps)
+            for short, (name, log) in zip(coarse, logs.items(), strict=True)
+        )
+        held = with_best_starts(runs, *widened(asked.before, tuple(start), start))
+        found = estimate(held.runs, tuple(start), closer, asked.before, asked.told)
+        return replace(found, start=begun, searched=searched)
 
     if asked.window_s is not None:
         yield fitted(asked.window_s, start)
@@ -77,25 +83,6 @@ def fits_of_logs(
         found = fitted(period_s * rows, start)
         start = {name: found.belief.value(name) for name in names}
         yield found
-
-
-def _fitted(
-    bound: BoundPlant,
-    logs: Mapping[str, RunLog],
-    coarse: Sequence[Run],
-    ranges: dict[str, Range],
-    asked: Asked,
-    length_s: float,
-    start: Mapping[str, float],
-) -> Estimate:
-    """The coefficients of `start` by windows of `length_s`, in as many steps a sample as the short ones needed."""
-    closer = ranges | {name: replace(ranges[name], start=value) for name, value in start.items()}
-    runs = tuple(
-        replace(run_of(bound, log, name, length_s), substeps=short.substeps)
-        for short, (name, log) in zip(coarse, logs.items(), strict=True)
-    )
-    held = with_best_starts(runs, *widened(asked.before, tuple(start), start))
-    return estimate(held.runs, tuple(start), closer, asked.before, asked.told)
 
 
 def identify_logs(

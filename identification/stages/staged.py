@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -51,31 +51,38 @@ def data_of(experiment: Experiment) -> Data:
     return Data(f"experiment {kind.number}, {kind.heading}", kind.symbol or kind.title, experiment.kind)
 
 
+@dataclass(frozen=True)
+class AskedOfStage:
+    """What is asked of a stage: limits of coefficients, a search over the whole range of its parameters first (`wanted`), which are `free`
+    (None: all that the plant does not state as exact), and who is `told` of better parameters as soon as there are any."""
+
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    wanted: Search | None = None
+    free: Collection[str] | None = None
+    told: Told | None = None
+
+
+NOTHING_MORE = AskedOfStage()
+
+
 def identify_stage(
-    bound: BoundPlant,
-    experiment: Experiment,
-    belief: Belief,
-    limits: Mapping[str, tuple[float, float]] | None = None,
-    wanted: Search | None = None,
-    free: Collection[str] | None = None,
-    told: Told | None = None,
+    bound: BoundPlant, experiment: Experiment, belief: Belief, asked: AskedOfStage = NOTHING_MORE
 ) -> Stage:
     """One experiment added to what is known.
 
     A parameter that it needs but none before has informed is estimated with it from the plant's value, so a set of experiments with
-    gaps works and says what it cannot tell. `wanted` asks for a search over the whole range of its parameters first. A parameter that
-    the plant states as exact is held, unless it is among those named `free`; then only these are estimated. `told` hears of better
-    parameters as soon as there are any. Raises BadInput for a wrong plant, mount or lock, also where only the motion shows it.
+    gaps works and says what it cannot tell. Raises BadInput for a wrong plant, mount or lock, also where only the motion shows it.
     """
     check_setup(experiment, bound)
     kind = kind_of(experiment)
     run = kind.run(experiment, bound)
-    own = tuple(name for name in needed(run, kind, belief) if _is_free(name, bound, free))
-    ranges = ranges_of(bound, [*belief.names, *own], _limits(kind, limits, wanted)) | _aid_ranges(kind, experiment)
+    own = tuple(name for name in needed(run, kind, belief) if _is_free(name, bound, asked.free))
+    ranges = ranges_of(bound, [*belief.names, *own], _limits(kind, asked)) | _aid_ranges(kind, experiment)
+    wanted = asked.wanted
     coded = None if wanted is None else replace(wanted, bits={name: bits for name, (_, _, bits) in kind.code.items()})
     before = _with_aids(belief, kind, experiment)
     unknown = tuple(name for name, facts in kind.aids.items() if facts is None)
-    result = estimate([run], (*own, *unknown), ranges, before, told, coded)
+    result = estimate([run], (*own, *unknown), ranges, before, asked.told, coded)
     check_mount(run, kind, result, ranges, before)
     names = tuple(name for name in result.belief.names if name not in kind.aids)
     return Stage(experiment.kind, result, result.belief.part(names), result.belief.part(tuple(kind.aids)))
@@ -97,12 +104,10 @@ def _is_free(name: str, bound: BoundPlant, free: Collection[str] | None) -> bool
     return bool(bound.sd[place] > 0.0 or bound.p[place] == 0.0)
 
 
-def _limits(
-    kind: Kind, limits: Mapping[str, tuple[float, float]] | None, wanted: Search | None
-) -> Mapping[str, tuple[float, float]]:
+def _limits(kind: Kind, asked: AskedOfStage) -> Mapping[str, tuple[float, float]]:
     """The user's limits; a search has those of the experiment's code where the user says nothing."""
-    own = {} if wanted is None else {name: (lower, upper) for name, (lower, upper, _) in kind.code.items()}
-    return {**own, **(limits or {})}
+    own = {} if asked.wanted is None else {name: (lower, upper) for name, (lower, upper, _) in kind.code.items()}
+    return {**own, **asked.limits}
 
 
 def _excited(run: Run, name: str) -> bool:

@@ -14,7 +14,7 @@ from identification.search import methods
 from identification.search.genetic import Code, Settings, evolve
 from identification.search.methods import Search, search
 from identification.search.population import absolute_error, predictions
-from identification.stages.staged import identify_stage
+from identification.stages.staged import AskedOfStage, identify_stage
 from tests.plants import bound as plant_of
 
 
@@ -139,7 +139,7 @@ def test_a_parameter_without_bounds_is_looked_for_within_five_sizes_of_its_start
     """Experiment 3 of seed 000: Psi_m has no bounds, and is 0 on this rig; every reading is a balance, not a motion."""
     monkeypatch.setattr(methods, "evolve", partial(evolve, settings=Settings(generations=25)))
     plant = plant_of("ce150")
-    stage = identify_stage(plant, perform("gravity", plant, 1), NOTHING, None, Search(method, 1))
+    stage = identify_stage(plant, perform("gravity", plant, 1), NOTHING, AskedOfStage(wanted=Search(method, 1)))
     (found,) = stage.result.searched
     place = found.names.index("Psi_m")
     assert (found.lower[place], found.upper[place]) == (-0.5, 0.5)

@@ -8,7 +8,7 @@ import pytest
 from identification.fit.belief import NOTHING, stated
 from identification.results.held import leaning
 from identification.results.notes import leaning_notes
-from identification.stages.staged import identify_stage
+from identification.stages.staged import AskedOfStage, identify_stage
 
 
 @pytest.fixture(scope="module")
@@ -19,13 +19,13 @@ def swing(experiments):
 def test_an_inertia_leans_on_the_gravity_torque_that_was_held(bound, swing):
     """Truth: the swing tells J_E / tau_gE; with tau_gE one sd higher a fit of its own finds J_E higher by `by`, to one in fifty."""
     names = ("J_E", "b_vE", "b_cE")
-    fit = identify_stage(bound, swing, NOTHING, free=names).result
+    fit = identify_stage(bound, swing, NOTHING, AskedOfStage(free=names)).result
     found = {entry.name: entry for entry in leaning(bound, fit)}
     assert found["J_E"].held == ("tau_gE",)
     place = [str(symbol) for symbol in bound.model.parameter_symbols].index("tau_gE")
     p = bound.p.copy()
     p[place] += bound.sd[place]
-    moved = identify_stage(replace(bound, p=p), swing, NOTHING, free=names).result
+    moved = identify_stage(replace(bound, p=p), swing, NOTHING, AskedOfStage(free=names)).result
     assert moved.belief.value("J_E") - fit.belief.value("J_E") == pytest.approx(found["J_E"].by, rel=0.02)
     (note,) = leaning_notes("swing", list(found.values()))
     assert note.startswith("swing: the intervals take tau_gE as exact; by the sd in the plant file J_E may be off by ")

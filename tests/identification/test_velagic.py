@@ -13,7 +13,7 @@ from identification.experiments.velagic.figures import responses
 from identification.fit.belief import NOTHING
 from identification.results.result import identification
 from identification.search.methods import Search
-from identification.stages.staged import identify_stage
+from identification.stages.staged import AskedOfStage, identify_stage
 from records.errors import BadInput
 from sim.bind import bind
 from tests.plants import bound as plant_of
@@ -49,7 +49,9 @@ def staged(start, records):
     """The paper's order: genetic search, gradient method beside it, then the fit."""
     stages, belief = [], NOTHING
     for record in records:
-        stages.append(identify_stage(start, record, belief, None, Search("genetic", 1, beside=("gradient",))))
+        stages.append(
+            identify_stage(start, record, belief, AskedOfStage(wanted=Search("genetic", 1, beside=("gradient",))))
+        )
         belief = stages[-1].belief
     return stages
 
@@ -95,7 +97,9 @@ def test_the_fitness_rises_as_in_fig_6(found):
 
 def test_all_five_of_u1_are_known_by_ratios_alone_and_that_direction_is_named(truth, elsewhere, records):
     """With tau_G free as in the paper: every torque over tau_G to 0.1 %, tau_G itself not told."""
-    stage = identify_stage(elsewhere, records[0], NOTHING, free=ALL)  # from where it starts: no search is asked about
+    stage = identify_stage(
+        elsewhere, records[0], NOTHING, AskedOfStage(free=ALL)
+    )  # from where it starts: no search is asked about
     belief = stage.belief
     assert set(belief.names) == {"a_1", "b_1", "B_psi", "tau_G", "I_inv"}
     for name in ("a_1", "b_1", "B_psi"):

@@ -15,7 +15,7 @@ from identification.stages.best_fit import best_fit
 from identification.stages.estimate import Data, Estimate
 from identification.stages.holdout import prediction_tests
 from identification.stages.logs import Asked, fits_of_logs
-from identification.stages.staged import data_of, identify_stage
+from identification.stages.staged import AskedOfStage, data_of, identify_stage
 from records.errors import BadInput
 from records.experiment import Experiment
 from records.log import RunLog
@@ -64,11 +64,10 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
 def _from_experiments(bound: BoundPlant, experiments: Sequence[Experiment], wishes: Wishes, so_far: Progress) -> Done:
     """One stage for each experiment, in the paper's order."""
     done = Done(belief=stated(bound) if wishes.keep_knowledge else NOTHING)
+    asked = AskedOfStage(wishes.limits, wishes.search, wishes.only, so_far.told)
     for experiment in experiments:
         with console.stage(str(data_of(experiment))):
-            stage = identify_stage(
-                bound, experiment, done.belief, wishes.limits, wishes.search, wishes.only, so_far.told
-            )
+            stage = identify_stage(bound, experiment, done.belief, asked)
         done = done.with_stage(data_of(experiment), stage.result, stage.belief, stage.aids)
         so_far.finished(done)
     return done
