@@ -31,10 +31,9 @@ _DRIVERS_V = (0.1, 1000.0)
 _DRIVERS = (1e-6, 1e6)  # of a driver of another unit, an ampere or a newton metre, whose scale says nothing of its kind
 
 
-def with_pins(
-    bound: BoundPlant, loops: tuple[Loop, ...], section: Mapping[str, Any], where: str, board: Board = STM32G071
-) -> tuple[Loop, ...]:
+def with_pins(bound: BoundPlant, loops: tuple[Loop, ...], board: Board = STM32G071) -> tuple[Loop, ...]:
     """The loops with the pins that [board] names, as they are where it names none; raises BadInput for what `board` does not have."""
+    section, where = bound.plant.board, bound.plant.section("board")
     if not section:
         return loops
     columns = [name for loop in loops for name in (loop.output, loop.input)]

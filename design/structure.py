@@ -16,16 +16,16 @@ from sim.model import Axis, Model
 _NO_LOOP = ("margins", "schedule", "tuned")
 
 
-def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple[Loop, ...]:
+def loops_of(bound: BoundPlant) -> tuple[Loop, ...]:
     """The loops that [design] names, each a section with `output` and `input`; raises BadInput for what the plant does not have.
 
     The helicopter's go without saying, and so do the columns of a plant of one output and one input.
     """
-    board, board_where = bound.plant.board, where.removesuffix("design") + "board"
+    section, where = bound.plant.design, bound.plant.section("design")
     if not missing(bound):
-        if board:
+        if bound.plant.board:
             expected = f"none: the helicopter's loops have the board's own pins, {page('firmware.md')}"
-            raise BadInput("section [board]", board_where, "pins", expected, "leave it out")
+            raise BadInput("section [board]", bound.plant.section("board"), "pins", expected, "leave it out")
         return LOOPS
     if not bound.model.inputs:
         remedy = "give the equations an input; without one `twinlaw simulate` shows how it moves, and `identify` and `diagnose` take it"
@@ -41,7 +41,7 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
     for loop in loops:
         _demand_column("output", loop.output, [str(name) for name in bound.model.outputs], f"{where}.{loop.axis}")
         _demand_column("input", loop.input, [str(name) for name in bound.model.inputs], f"{where}.{loop.axis}")
-    return with_pins(bound, loops, board, board_where)
+    return with_pins(bound, loops)
 
 
 def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, Any]:

@@ -88,6 +88,10 @@ class Plant:
     equations: Equations | None = None
     board: Mapping[str, Any] = field(default_factory=dict)
 
+    def section(self, name: str) -> str:
+        """Where a section of its file stands, as an error says it."""
+        return f"plant {self.name!r}: {name}"
+
 
 def load_plant(path: Path) -> Plant:
     """Read a plant file; raises BadInput naming the file, the key and the remedy.

@@ -41,7 +41,7 @@ def with_effects(bound: BoundPlant, values: Sizes, *, sd: Sizes | None = None, s
     model is the same object for the same set of names, so its kernel is compiled once. Raises BadInput for an unknown effect or symbol
     and for a value beyond its bounds.
     """
-    where = f"plant {bound.plant.name!r}: effects"
+    where = bound.plant.section("effects")
     nominal = bound.nominal
     entries = {
         name: _entries(find_effect(nominal, name, where), given, (sd or {}).get(name, {}), source, f"{where}.{name}")
@@ -78,7 +78,7 @@ def combined(bound: BoundPlant, names: Iterable[str]) -> BoundPlant:
     dead band its sides. with_values then gives single effects real sizes without compiling again. Raises BadInput for an unknown effect.
     """
     known = library(bound)
-    where = f"plant {bound.plant.name!r}: effects"
+    where = bound.plant.section("effects")
     nominal = bound.nominal
     chosen = [known.get(name) or find_effect(nominal, name, where) for name in names]
     return with_effects(bound, {effect.name: {p.symbol: p.touched for p in effect.parameters} for effect in chosen})
@@ -89,7 +89,7 @@ def with_values(bound: BoundPlant, values: Sizes) -> BoundPlant:
 
     Raises BadInput for an effect or symbol that it does not have, and for a value beyond its bounds.
     """
-    where = f"plant {bound.plant.name!r}: effects"
+    where = bound.plant.section("effects")
     nominal = bound.nominal
     changed = {name: dict(entries) for name, entries in bound.effects.items()}
     on_equations = carried(nominal, changed)

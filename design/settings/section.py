@@ -75,8 +75,8 @@ DELAY_MARGIN_SAMPLES, DELAY_MARGIN_S = 2, 0.02
 
 def read_settings(bound: BoundPlant) -> DesignSettings:
     """The settings in the plant's [design] section; raises BadInput naming key, range or pole that cannot be used."""
-    section, where = bound.plant.design, f"plant {bound.plant.name!r}: design"
-    loops = loops_of(bound, section, where)
+    section, where = bound.plant.design, bound.plant.section("design")
+    loops = loops_of(bound)
     scheduling = scheduling_loop(section, loops, where)
     ranges = () if scheduling is None else range_keys(scheduling)
     names = [loop.axis for loop in loops]
