@@ -99,6 +99,12 @@ class Model:
         """The least and the largest value of an input: without end where the model states none."""
         return self.input_limits.get(variable, (-sympy.oo, sympy.oo))
 
+    @cached_property
+    def axis_states(self) -> frozenset[str]:
+        """The names of the states that are an axis' position or velocity."""
+        states = (state for axis in self.axes for state in (axis.position, axis.velocity))
+        return frozenset(str(state) for state in states if state is not None)
+
     @property
     def friction_signs(self) -> tuple[sympy.Symbol, ...]:
         """One symbol per axis for the direction of its dry friction: sgn(velocity), or 0 where it is left out."""

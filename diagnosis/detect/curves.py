@@ -20,7 +20,7 @@ from diagnosis.detect.signals import (
     Signals,
     angle_names,
     input_name,
-    measured,
+    motionless,
     rotor_name,
     signals,
     through,
@@ -287,7 +287,7 @@ def _rotor(case: Case, rotor: str) -> Quantity:
 
 
 def _state(case: Case, state: str) -> Quantity:
-    place = measured(case.library.bound.model)[state]
+    place = motionless(case.library.bound.model)[state]
     return Quantity(stem(state), place.unit, place.size)
 
 

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.case import Case
-from diagnosis.library.driven import driven
 from records.text.units import stem
 from sim.model import TIME, Model
 from sim.places import SensorPlace
@@ -69,7 +68,7 @@ def signals(linearisation: Linearisation, flight: int, waves: Mapping[str, tuple
         },
         inertia={name: _relative(value(axis.inertia)) for name, axis in axes.items()},
         u={name: value(entry.variable) / entry.size for name, entry in model.places.inputs.items()},
-        state={state: value(sympy.Symbol(state, real=True)) / place.size for state, place in measured(model).items()},
+        state={state: value(sympy.Symbol(state, real=True)) / place.size for state, place in motionless(model).items()},
         reach={
             name: (found[0], value(found[1]) * entry.size)
             for name, entry in model.places.inputs.items()
@@ -80,12 +79,21 @@ def signals(linearisation: Linearisation, flight: int, waves: Mapping[str, tuple
 
 
 @lru_cache(maxsize=64)
-def measured(model: Model) -> dict[str, SensorPlace]:
+def motionless(model: Model) -> dict[str, SensorPlace]:
     """The plant's own states that an output is, but for what moves, axes and rotors: currents, temperatures, levels; with the sensor."""
-    moving = {str(state) for axis in model.axes for state in (axis.position, axis.velocity)}
-    moving |= {str(rotor.speed) for rotor in model.places.rotors.values()}
+    moving = model.axis_states | {str(rotor.speed) for rotor in model.places.rotors.values()}
     read = {str(model.outputs[sensor.output]): sensor for sensor in model.places.sensors.values()}
     return {state: read[state] for state in map(str, model.states) if state in read and state not in moving}
+
+
+@lru_cache(maxsize=64)
+def driven(model: Model, variable: sympy.Symbol) -> tuple[str, sympy.Expr] | None:
+    """The first state whose rate an input changes, an axis' velocity before others, and the slope of that rate by the input; None where it
+    changes none."""
+    rates = {str(axis.velocity): axis.torque / axis.inertia for axis in model.axes}
+    rates |= {str(state): rate for state, rate in model.rates.items()}
+    slopes = ((state, sympy.diff(rate, variable)) for state, rate in rates.items())
+    return next(((state, slope) for state, slope in slopes if slope != 0), None)
 
 
 def value_of(model: Model, expression: sympy.Expr, t_s: Array, x: Array, u: Array, p: Array) -> Array:
@@ -128,7 +136,7 @@ def input_name(case: Case, place: str) -> str:
 
 def state_unit(case: Case, state: str) -> str:
     """What is measured in units of its size, as text."""
-    return in_units(stem(state), measured(case.library.bound.model)[state].size)
+    return in_units(stem(state), motionless(case.library.bound.model)[state].size)
 
 
 def angle_names(case: Case) -> dict[str, str]:

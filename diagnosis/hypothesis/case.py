@@ -107,14 +107,13 @@ class Case:
         """The plant's own states that some log reads, but for what moves as an axis does, and the standard deviation of their readings:
         rotor speeds, currents, temperatures."""
         model, library = self.library.bound.model, self.library
-        moving = {str(state) for axis in model.axes for state in (axis.position, axis.velocity)}
         read = {
             str(model.outputs[name]) if name in model.outputs else name: place
             for place, name in enumerate(library.outputs)
         }
         found = dict[str, float]()
         for state in library.states:
-            if state in read and state not in moving:
+            if state in read and state not in model.axis_states:
                 y = np.concatenate([flight.filter_input.y[:, read[state]] for flight in self.flights])
                 size = float(np.nanstd(y)) if np.isfinite(y).any() else 0.0
                 found |= {state: size} if size > 0.0 else {}

@@ -62,7 +62,7 @@ def wrap_findings(log: RunLog, name: str, steps: Mapping[str, float], positions:
 def exchange_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
     """The first output of an axis that is a staircase, with the first input that is none and changes all along; or one that lies on no
     grid, with the first input that lies on that of its sensor."""
-    states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
+    states = bound.model.axis_states
     of_axes = [output for output, expression in bound.model.outputs.items() if str(expression) in states]
     exchanged = next(chain(_stairs(log, of_axes, bound.plant.sensors), _grids(log, of_axes, bound.plant.sensors)), None)
     if exchanged is None:

@@ -25,10 +25,9 @@ SIDE = int(thresholds.SEAM_ROWS)
 
 def turned_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
     """Outputs that are an axis' position or speed, and whose sign turns; not where a reference leaps too, as another flight may begin."""
-    states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
     flights = np.concatenate([[0], np.cumsum(new_references(log, facts.steps))])
     for column, expression in bound.model.outputs.items():
-        if str(expression) not in states:
+        if str(expression) not in bound.model.axis_states:
             continue
         read = np.isfinite(log.column(column))
         t_s, values = log.t_s[read], log.column(column)[read]

@@ -113,11 +113,10 @@ def off_findings(log: RunLog, name: str, bound: BoundPlant, steps: Mapping[str, 
     begin = _still_from(log)
     if len(log.t_s) - begin < thresholds.DEAD_ROWS or begin < 2:
         return
-    states = {str(state) for axis in bound.model.axes for state in (axis.position, axis.velocity)}
     for output, expression in bound.model.outputs.items():
         values = log.column(output)[: begin + 1]
         moves, step = np.abs(np.diff(values[np.isfinite(values)])), steps.get(output, 0.0)
-        if str(expression) not in states or moves.size < 2 or not moves.any():
+        if str(expression) not in bound.model.axis_states or moves.size < 2 or not moves.any():
             continue
         near = moves[-1 - thresholds.AROUND_STAND_ROWS : -1].max(initial=0.0)
         usual = float(np.percentile(moves, thresholds.USUAL_MOVE_PERCENT))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import sympy
 
-from diagnosis.library.driven import driven
+from diagnosis.detect.signals import driven
 from records.plant import load_plant
 from sim.bind import BoundPlant, bind
 from tests.own_plants import HEATER, TWO_HEATERS
