@@ -68,16 +68,14 @@ def slope_of(noise: Noise, other: Noise, by: float) -> Noise:
 
 @dataclass(frozen=True, eq=False)
 class Wanted:
-    """What a pass is to leave beside innovations and states: by which `columns` of p and by which slopes of the noise, `noises`, its
-    likelihood is differentiated; whether the slopes of each innovation and the gains are kept."""
+    """What a pass is to leave: `slots` (outputs,) where each output's innovations go, -1 for none; by which `columns` of p and by which
+    slopes of the noise, `noises`, its likelihood is differentiated; whether the slopes of each innovation and the gains are kept."""
 
+    slots: Sequence[int]
     columns: Sequence[int] = ()
     noises: Sequence[Noise] = ()
     slopes: bool = False
     gains: bool = False
-
-
-INNOVATIONS = Wanted()
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,17 +117,14 @@ class Filter:
         p: Array,
         x0: Array,
         noise: Noise,
-        slots: Sequence[int],
-        *,
+        wanted: Wanted,
         locked: Sequence[str] = (),
-        wanted: Wanted = INNOVATIONS,
     ) -> Pass | None:
-        """Filter one log's input from x0 (states,), or (starts, states) where it begins anew; `slots` (outputs,) where each output's
-        innovations go, -1 for none.
+        """Filter one log's input from x0 (states,), or (starts, states) where it begins anew; `locked` are axes that are held.
 
         None where the state left all bounds or rattles without end: the parameters do not fit at all. What began anew so ends there.
         """
-        columns, noises = wanted.columns, wanted.noises
+        slots, columns, noises = wanted.slots, wanted.columns, wanted.noises
         assert len(columns) <= self.lib.MAX_COLUMNS
         assert len(noises) <= self.lib.MAX_NOISES
         width, steps = max(slots) + 1, len(filter_input.t_s)

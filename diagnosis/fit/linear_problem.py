@@ -61,7 +61,7 @@ def linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: fl
         information[np.ix_(rows, rows)] += run.gram[np.ix_(own, own)]
         pull[rows] += run.pull[own]
     if not inside.all():
-        _add_differences(case, hypothesis, free, runs, columns, information, pull)
+        _add_differences(case, hypothesis, runs, columns, information, pull)
     for row, entry in enumerate(free, count):
         late = case.library.effects[entry.effect].reads_late
         if late and entry.of(hypothesis) > SHORTEST_LAG_S:
@@ -100,7 +100,7 @@ class _Columns:
     """
 
     def __init__(self, case: Case, compiled: CompiledFilter, free: Sequence[Free], lacks: Mapping[str, Lack]) -> None:
-        self._count, self._free, self._lacks = len(case.free), free, lacks
+        self._count, self.free, self._lacks = len(case.free), free, lacks
         inside = [(row, entry) for row, entry in enumerate(free, self._count) if entry.effect in compiled.names]
         own = {row: compiled.place(entry.effect, entry.parameter.symbol) for row, entry in inside}
         further = list(dict.fromkeys(own.values()))
@@ -111,7 +111,7 @@ class _Columns:
     def of(self, log: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The numbers that a log tells of, and the column of each in its pass."""
         rows = [
-            row for row in self.rows.tolist() if row < self._count or self._tells(self._free[row - self._count], log)
+            row for row in self.rows.tolist() if row < self._count or self._tells(self.free[row - self._count], log)
         ]
         return np.array(rows, dtype=int), np.array([self._column.get(row, row) for row in rows], dtype=int)
 
@@ -123,14 +123,13 @@ class _Columns:
 def _add_differences(
     case: Case,
     hypothesis: Hypothesis,
-    free: Sequence[Free],
     runs: Sequence[Pass],
     columns: "_Columns",
     information: Array,
     pull: Array,
 ) -> None:
     """Rows and columns of numbers that act on the way of a signal, by finite differences."""
-    w, own = stacked(runs), columns.rows
+    w, own, free = stacked(runs), columns.rows, columns.free
     slopes = np.concatenate([_own_slopes(columns, flight, run) for flight, run in zip(case.flights, runs, strict=True)])
     count = len(hypothesis.theta)
     outside = np.setdiff1d(np.arange(count, len(pull)), own)

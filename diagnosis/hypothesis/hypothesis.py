@@ -246,8 +246,8 @@ def passes(
         filter_input = filter_input_under(case, compiled, flight, here)
         x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, here)
         others = [(noise_of(case, compiled, flight, other.over(flight)), by) for other, by in noises]
-        wanted = Wanted(columns, [slope_of(noise, other, by) for other, by in others], slopes, gains)
-        run = compiled.filter.run(filter_input, p, x0, noise, case.slots, locked=flight.locked, wanted=wanted)
+        wanted = Wanted(case.slots, columns, [slope_of(noise, other, by) for other, by in others], slopes, gains)
+        run = compiled.filter.run(filter_input, p, x0, noise, wanted, flight.locked)
         return None if run is None else replace(run, log_likelihood=run.log_likelihood + filter_input.known)
 
     runs = thread_map(over, case.flights)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput
-from diagnosis.library.reading_spans import charge, less_sure
+from diagnosis.library.reading_spans import UniformError, charge, less_sure
 from sim.paths.path import played
 
 Array = NDArray[np.float64]
@@ -36,8 +36,8 @@ def behind_play(filter_input: FilterInput, output: int, width: float, step: floa
     )  # what moves the reading within a crossing is no noise
     rows = np.bincount(crossing, minlength=1)[crossing]
     alike = np.maximum(rows[unsure], filter_input.standing[seen[unsure], output])
-    each_nats = min(BELL, charge(filter_input, output, width))
-    found = less_sure(replace(filter_input, y=y), output, seen[unsure], alike, width, each_nats)
+    error = UniformError(width, min(BELL, charge(filter_input, output, width)))
+    found = less_sure(replace(filter_input, y=y), output, seen[unsure], alike, error)
     before, behind = (given.r[seen[unsure], output] for given in (filter_input, found))
     scattered = float((1.0 - before / behind) @ _noise_nats(read[unsure], stretch[unsure], step, single))
     return replace(found, known=found.known - scattered)

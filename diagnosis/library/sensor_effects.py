@@ -11,7 +11,7 @@ from diagnosis.filter.filter_input import FilterInput, late, variance_stated
 from diagnosis.library.coarse_grid import grid_evidence
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.library.play import behind_play
-from diagnosis.library.reading_spans import charge, less_sure
+from diagnosis.library.reading_spans import UniformError, charge, less_sure
 from sim.effect import Values
 from sim.paths.output_stages import OutputDelay, OutputLag, OutputSteps, Play
 from sim.paths.path import OutputStage
@@ -102,8 +102,8 @@ def _coarser(filter_input: FilterInput, output: int, grid: float, step: float) -
     r[seen, output] = filter_input.standing[seen, output] * filter_input.single[output]
     of_grid = grid_evidence(filter_input.read[:, output], grid, step)
     plain = replace(filter_input, y=y, r=r)
-    alike, each_nats = filter_input.standing[seen, output], charge(filter_input, output, grid)
-    return less_sure(plain, output, seen, alike, grid, each_nats, of_grid)
+    error = UniformError(grid, charge(filter_input, output, grid), of_grid)
+    return less_sure(plain, output, seen, filter_input.standing[seen, output], error)
 
 
 # What a filter makes of the readings behind each kind of stage: (library, filter input, stage) -> filter input.

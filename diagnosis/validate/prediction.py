@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
-from diagnosis.filter.kalman import Noise, Pass
+from diagnosis.filter.kalman import Noise, Pass, Wanted
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, filter_input_under, noise_of, start_under
 from diagnosis.library.effect_library import CompiledFilter
@@ -49,7 +49,7 @@ def predictions(
     chosen = compiled.filter
     places = np.tile(np.arange(len(filter_input.t_s))[:, None], (1, filter_input.y.shape[1]))
     whole = replace(filter_input, row=np.arange(len(filter_input.t_s)), place=places, rows=len(filter_input.t_s))
-    run = chosen.run(whole, given, start_under(compiled, flight)[0], noise, case.slots, locked=flight.locked)
+    run = chosen.run(whole, given, start_under(compiled, flight)[0], noise, Wanted(case.slots), flight.locked)
     outputs = len(library.bound.model.outputs)
     found = np.full((len(flight.log.t_s), outputs), np.nan)
     if run is None:
@@ -59,10 +59,10 @@ def predictions(
     spans = [span for span in spans if t_s[span.start] >= t_s[0] + settled_after_s(t_s, second_s)]
     stretches = [_stretch(filter_input, t_s, span, max(lateness)) for span in spans]
     stretches = [stretch for stretch in stretches if stretch.begin >= 0]
-    slots = [place if place < outputs else -1 for place in range(len(library.outputs))]
+    wanted = Wanted([place if place < outputs else -1 for place in range(len(library.outputs))])
 
     def free(part: FilterInput, begins: NDArray[np.int64]) -> Pass | None:
-        return chosen.run(part, given, run.filtered[begins], _sure(noise), slots, locked=flight.locked)
+        return chosen.run(part, given, run.filtered[begins], _sure(noise), wanted, flight.locked)
 
     for stretch, y in zip(stretches, _left_alone(unforeseen_input, stretches, outputs, free), strict=True):
         if not np.isfinite(y).all():

@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.filter.filter_input import Added, FilterInput, spread
-from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass, slope_of
+from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass, Wanted, slope_of
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.linear_problem import Fit
@@ -189,7 +189,7 @@ def test_what_begins_anew_is_as_runs_of_their_own() -> None:
         return replace(whole, **arrays, row=np.arange(len(rows)), place=place, rows=len(rows))
 
     def run(chosen: list[slice], x0: np.ndarray, anew: np.ndarray | None) -> Pass:
-        found = compiled.filter.run(replace(part(chosen), anew=anew), p, x0, noise, arm.case.slots)
+        found = compiled.filter.run(replace(part(chosen), anew=anew), p, x0, noise, Wanted(arm.case.slots))
         assert found is not None
         return found
 

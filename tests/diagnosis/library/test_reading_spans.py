@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.library.reading_spans import charge, less_sure
+from diagnosis.library.reading_spans import UniformError, charge, less_sure
 from tests.diagnosis.library.test_sensor_effects import STEP, readings
 
 
@@ -11,7 +11,7 @@ def test_readings_that_share_an_error_are_as_sure_together_as_one() -> None:
     # Truth: a uniform error within a span has the variance span^2 / 12; four readings that share it say what one does, and cost it once.
     plain = readings(STEP * np.arange(12))
     rows, span = np.array([4, 5, 6, 7]), 10.0 * STEP
-    found = less_sure(plain, 0, rows, np.full(4, 4.0), span, 0.3)
+    found = less_sure(plain, 0, rows, np.full(4, 4.0), UniformError(span, 0.3))
     assert found.r[rows, 0] - plain.r[rows, 0] == pytest.approx(4.0 * span**2 / 12.0)
     assert np.sum(1.0 / (found.r[rows, 0] - plain.r[rows, 0])) == pytest.approx(12.0 / span**2)
     counted = plain.place[rows, 0] >= 0
