@@ -7,7 +7,8 @@ from types import MappingProxyType
 from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.search.beam import Search, certainties
+from diagnosis.search.beam import Search
+from diagnosis.search.sure_sizes import certainties
 from records.diagnosis import PlaceShare
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.decisions import decided
 from diagnosis.detect.instants import happened
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import score_effects
@@ -21,10 +20,9 @@ from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink
 from diagnosis.search.fitting import Job, in_all_logs, is_astray, keep_better, once_more, refined, rough
 from diagnosis.search.noise_beside import with_noise_beside, with_noise_of
 from diagnosis.search.own_events import with_own_events
+from diagnosis.search.sure_sizes import is_certain, kept_by_size
 from jobs.thread_map import thread_map
 from records.reasons import Decision
-
-TOLD = 4  # hypotheses left out that are told of
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,9 +134,9 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
             break
     _settle(case, found, first)
     told = [entry for entry in found.values() if happened(case, entry.fit.hypothesis)]
-    certain = [entry for entry in told if _certain(entry, found)]
+    certain = [entry for entry in told if is_certain(entry, found)]
     fitted = sorted([first, *(certain or told)], key=lambda entry: -entry.evidence)
-    rules = _rules(found, certain, fitted[0])
+    rules = kept_by_size(found, certain, fitted[0])
     return Search(tuple(fitted), first, bool(certain), begun.linearisation, begun.score_tests, rules)
 
 
@@ -154,31 +152,12 @@ def with_twins(case: Case, told: Search, first: FittedHypothesis) -> Search:
     """
     found = {frozenset(entry.effects): entry for entry in told.fitted}
     ends = with_noise_of(case, fit_twins(case, found, first), first)
-    kept = [entry for entry in ends if _certain(entry, found) and happened(case, entry.fit.hypothesis)]
+    kept = [entry for entry in ends if is_certain(entry, found) and happened(case, entry.fit.hypothesis)]
     if not kept:
         return told
     better = {frozenset(entry.effects): entry for entry in told.fitted}
     keep_better(better, kept)
     return replace(told, fitted=tuple(sorted(better.values(), key=lambda entry: -entry.evidence)))
-
-
-def _rules(
-    found: Mapping[frozenset[str], FittedHypothesis], certain: Sequence[FittedHypothesis], best: FittedHypothesis
-) -> tuple[Decision, ...]:
-    """Of the best, and of all that would be better but for a size that may be zero: how far its least size is from zero."""
-    better = [entry for entry in found.values() if entry not in certain and entry.evidence > best.evidence]
-    asked = sorted(better, key=lambda entry: -entry.evidence)[:TOLD]
-    asked += [best] if best.effects else []
-    return tuple(
-        decided(
-            "size_from_zero",
-            " + ".join(entry.effects),
-            min(certainties(entry.fit).values(), default=float("nan")),
-            decisions.BEYOND_CHANCE,
-            "left out: its size may be zero" if certain and entry not in certain else "kept",
-        )
-        for entry in asked
-    )
 
 
 def _worth(score_tests: Sequence[ScoreTest]) -> frozenset[str]:
@@ -221,50 +200,16 @@ def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> li
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: FittedHypothesis) -> None:
     """Once more the best of all with the twins of the first, until effects and all noise agree: a fit not yet at its end would lose to one
     with an idle effect. What is far from the best is left as it is."""
-    best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
+    best = sorted((entry for entry in found.values() if is_certain(entry, found)), key=lambda entry: -entry.evidence)
     best = [entry for entry in best if entry.evidence > least_near(best[0], nominal)]
     twins = [entry for entry in best if is_twin(case.library, entry, best[0])]
     asked = [frozenset(entry.effects) for entry in dict.fromkeys([*best[: decisions.NEXT], *twins])]
     for step in (refined, in_all_logs, once_more, with_own_events):
         ends = thread_map(lambda names, step=step: step(case, found[names]), asked)
         keep_better(found, [end for end in ends if end is not None])
-    keep_better(found, with_noise_beside(case, [entry for entry in found.values() if _certain(entry, found)], nominal))
-
-
-def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:
-    """Whether every effect has a size that is not zero within its spread, or one that may hardly be zero and without which all is far
-    less likely: where an axis sticks, the readings beside it alone make that spread."""
-    for name, certainty in certainties(fitted.fit).items():
-        without = found.get(frozenset(fitted.effects) - {name})
-        missed = 0.0 if without is None else fitted.evidence - without.evidence
-        if certainty < decisions.BEYOND_CHANCE and (certainty < decisions.SURELY or missed < decisions.TAKEN_IN):
-            return False
-    return True
-
-
-def certainties(fit: Fit) -> dict[str, float]:
-    """How far each effect's size is from zero, in standard deviations; that of one alone with its shapes held where they are.
-
-    Of no size, an effect has no shape: a spring whose rest lies beyond all that was flown may be a little softer and rest further away,
-    and is no less there for that. Beside others its shapes may take their part.
-    """
-    count = len(fit.hypothesis.theta)
-    alone = len({entry.effect for entry in fit.free if entry.stated is None}) == 1
-    held = [
-        row
-        for row, entry in enumerate(fit.free, count)
-        if alone and entry.stated is None and not entry.parameter.is_size
-    ]
-    kept = np.setdiff1d(np.arange(len(fit.information)), held)
-    spread = np.zeros(len(fit.information))
-    spread[kept] = np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information[np.ix_(kept, kept)])), 0.0))
-    sizes: dict[str, float] = {}
-    for entry, sd in zip(fit.free, spread[count:], strict=True):
-        if entry.parameter.is_size and entry.stated is None:
-            away = fit.hypothesis.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
-            certainty = abs(away) / max(float(sd) * entry.scale, 1e-300)
-            sizes[entry.effect] = max(sizes.get(entry.effect, 0.0), certainty)
-    return sizes
+    keep_better(
+        found, with_noise_beside(case, [entry for entry in found.values() if is_certain(entry, found)], nominal)
+    )
 
 
 def _grown(

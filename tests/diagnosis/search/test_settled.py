@@ -37,7 +37,7 @@ def test_ends_that_are_far_from_the_best_are_not_settled(
 
     for step in ("refined", "once_more", "with_own_events"):
         monkeypatch.setattr(beam, step, once_more)
-    monkeypatch.setattr(beam, "_certain", lambda entry, found: True)
+    monkeypatch.setattr(beam, "is_certain", lambda entry, found: True)
     monkeypatch.setattr(beam, "is_twin", lambda case, entry, best: True)
     monkeypatch.setattr(beam, "with_noise_beside", lambda case, entries, nominal: [])
     beam._settle(arm_case(arm_log(seed=47)), found, nominal)
