@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 import sim
 from diagnosis import decisions
-from diagnosis.filter.kalman import Filter, build_filter, equations_text, open_filter
+from diagnosis.filter.build import build_filter, equations_text, open_filter
+from diagnosis.filter.kalman import Filter
 from diagnosis.library.filter_state import with_filter_state
 from diagnosis.library.reading_noise import switch_of, with_reading_noise
 from diagnosis.library.subprocess import NotDone, in_subprocess

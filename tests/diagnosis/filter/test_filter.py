@@ -10,8 +10,9 @@ from scipy.signal import lfilter
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
+from diagnosis.filter.build import C_DIR, FLAGS
 from diagnosis.filter.filter_input import Added, FilterInput, spread
-from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass, Wanted, slope_of
+from diagnosis.filter.kalman import PART, Pass, Wanted, slope_of
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.likelihood import likelihood_of
 from diagnosis.fit.linear_problem import Fit
