@@ -12,7 +12,6 @@ from records.errors import BadInput
 from records.reasons import Decision
 
 DEVELOPMENT = "development cases of the sealed generator, seeds 21 and 22"
-DEVELOPMENT_21 = "160 development cases, seed 21"
 
 
 # What chance does, and what matters

@@ -1,14 +1,34 @@
 """Inputs at the plant's limits, beyond them, and held by a limit that is not the plant's."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows, in_words
-from logcheck.values import NEAR_LIMIT, saturations
 from records.log import RunLog
 from records.text.units import unit_of
+
+NEAR_LIMIT = 1e-6  # of the limits' span
+
+
+@dataclass(frozen=True)
+class Saturation:
+    """Share of rows in which an input is at (or beyond) its lower and its upper limit."""
+
+    lower: float
+    upper: float
+
+
+def saturations(log: RunLog, limits: Mapping[str, tuple[float, float]]) -> dict[str, Saturation]:
+    """Shares at the limits by input."""
+    result = {}
+    for name in log.columns.inputs:
+        low, high = limits.get(name, (-np.inf, np.inf))
+        u, margin = log.column(name), NEAR_LIMIT * (high - low) if np.isfinite(high - low) else 0.0
+        result[name] = Saturation(float(np.mean(u <= low + margin)), float(np.mean(u >= high - margin)))
+    return result
 
 
 def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, float]]) -> Iterator[Found]:

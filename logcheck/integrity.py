@@ -3,7 +3,7 @@
 Rows that cannot be used are marked, everything odd is said, and what makes a log worthless is refused by `demand`.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -15,9 +15,9 @@ from logcheck.facts import PlantFacts, plant_facts
 from logcheck.finding import REFUSE, Finding, Found, Rows, beginning, bridged, marked, without
 from logcheck.inputs import input_findings
 from logcheck.plant import plant_findings
-from logcheck.stamps import Timing, timing, timing_findings
+from logcheck.stamps import timing, timing_findings
 from logcheck.stands.foretold import foretold_findings
-from logcheck.values import Excitation, Saturation, excitations, saturations, value_findings
+from logcheck.values import value_findings
 from logcheck.zeros import zero_input_findings
 from records.errors import BadInput
 from records.log import RunLog
@@ -28,13 +28,10 @@ from sim.columns import log_columns
 
 @dataclass(frozen=True, eq=False)
 class LogIntegrity:
-    """One log: its timing, saturation by input, excitation by column, which rows (n,) are left out, which readings (n, outputs) beside
-    these, which commands (n, inputs) are not known, and which rows (n,) begin another log."""
+    """One log: which rows (n,) are left out, which readings (n, outputs) beside these, which commands (n, inputs) are not known, and which
+    rows (n,) begin another log."""
 
     name: str
-    timing: Timing
-    saturation: Mapping[str, Saturation]
-    excitation: Mapping[str, Excitation]
     excluded: Rows
     unread: Rows
     unknown: Rows
@@ -158,12 +155,8 @@ def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts)
     for entry in found:
         if entry.excluded is not None and entry.finding.column not in own:
             excluded |= entry.excluded
-    is_other = any(entry.finding.kind in ("other_plant", "too_short") for entry in found)
     return LogIntegrity(
         name=name,
-        timing=timing(log),
-        saturation={} if is_other else saturations(log, facts.limits),
-        excitation={} if is_other else excitations(log, facts.steps),
         excluded=excluded,
         unread=marked(log.columns.outputs, found, rows),
         unknown=marked(log.columns.inputs, found, rows),

@@ -1,7 +1,6 @@
 """What the numbers of a log's columns say by themselves: missing, constant, saturated, copied, out of line; and how much moves."""
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -19,60 +18,6 @@ from logcheck.stands.standing import end_findings
 from logcheck.zeros import zero_findings
 from records.log import RunLog
 from sim.columns import reference_name
-
-NEAR_LIMIT = 1e-6  # of the limits' span
-
-
-@dataclass(frozen=True)
-class Saturation:
-    """Share of rows in which an input is at (or beyond) its lower and its upper limit."""
-
-    lower: float
-    upper: float
-
-
-@dataclass(frozen=True)
-class Excitation:
-    """How far a column moves: least, greatest, standard deviation; rms of its rate and encoder counts travelled in a second.
-
-    Rates are over a tenth of a second, so that encoder steps do not count as motion; counts are None where there is no encoder.
-    """
-
-    least: float
-    greatest: float
-    sd: float
-    rate_rms: float
-    counts_per_s: float | None
-
-
-def saturations(log: RunLog, limits: Mapping[str, tuple[float, float]]) -> dict[str, Saturation]:
-    """Shares at the limits by input."""
-    result = {}
-    for name in log.columns.inputs:
-        low, high = limits.get(name, (-np.inf, np.inf))
-        u, margin = log.column(name), NEAR_LIMIT * (high - low) if np.isfinite(high - low) else 0.0
-        result[name] = Saturation(float(np.mean(u <= low + margin)), float(np.mean(u >= high - margin)))
-    return result
-
-
-def excitations(log: RunLog, steps: Mapping[str, float]) -> dict[str, Excitation]:
-    """How far inputs and outputs move, by column; columns without any number are left out."""
-    stride = max(1, round(0.1 / log.sample_period_s))
-    result = {}
-    for name in (*log.columns.inputs, *log.columns.outputs):
-        present = np.isfinite(log.column(name))
-        values, t_s = log.column(name)[present], log.t_s[present]
-        if values.size <= stride:
-            continue
-        moved, passed_s = values[stride:] - values[:-stride], t_s[stride:] - t_s[:-stride]
-        rates = moved / np.where(passed_s > 0.0, passed_s, np.inf)
-        travelled = float(np.abs(np.diff(values)).sum())
-        duration_s = max(float(t_s[-1] - t_s[0]), log.sample_period_s)
-        step = steps.get(name, 0.0) if name in log.columns.outputs else 0.0
-        counts_per_s = travelled / step / duration_s if step > 0.0 else None
-        rate_rms = float(np.sqrt(np.mean(rates**2)))
-        result[name] = Excitation(float(values.min()), float(values.max()), float(values.std()), rate_rms, counts_per_s)
-    return result
 
 
 def value_findings(

@@ -130,7 +130,7 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
         return FirmwareReplay(False, False, None, "not_replayable", sentence)
     flight = flight_of(log, table)
     run = replayed(flight, table)
-    residuals = _residuals(log, flight, run)
+    residuals = _residuals(flight, run)
     rows = np.flatnonzero(run.differs.any(axis=1))
     at_s = float(flight.t_s[rows[0]]) if rows.size else None
     if run.arithmetic == FIXED:
@@ -255,7 +255,7 @@ def _behind_words(
     return FirmwareReplay(True, False, at_s, behind_it.name, sentence, residuals)
 
 
-def _residuals(log: RunLog, flight: ReplayedLog, run: Replayed) -> tuple[Residual, ...]:
+def _residuals(flight: ReplayedLog, run: Replayed) -> tuple[Residual, ...]:
     present = ~np.isnan(flight.logged_V).any(axis=1)
     result = []
     columns = (flight.logged_V[present].T, run.u_V[present].T, run.differs[present].T)

@@ -58,7 +58,7 @@ def variants(table: ControllerTable, flight: ReplayedLog, others: Sequence[Contr
         *_quantised(flight, table.loops, limits),
         *_arithmetic(),
         *_schedule(table),
-        *_rounded(table),
+        *_rounded(),
     ]
 
 
@@ -287,7 +287,7 @@ def _cut(setup: Setup, degree: int) -> Setup:
     return setup
 
 
-def _rounded(table: ControllerTable) -> Iterator[Variant]:
+def _rounded() -> Iterator[Variant]:
     ways: list[tuple[str, Round]] = [
         *((f"{digits} significant digits", partial(_to_digits, digits=digits)) for digits in range(3, 9)),
         *((f"{decimals} decimals", partial(round, ndigits=decimals)) for decimals in range(3, 9)),

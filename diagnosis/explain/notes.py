@@ -63,7 +63,7 @@ def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     theta = chosen.fit.hypothesis.theta
     p = coefficients(case, case.library.plain, chosen.fit.hypothesis.with_effects({}))  # what cannot be negative is not
-    for index in moved_parameters(case, theta, decisions.BEYOND_CHANCE):
+    for index in moved_parameters(theta, decisions.BEYOND_CHANCE):
         place = int(case.free[index])
         stated = float(case.library.bound.p[place])
         told = {"deviations": float(theta[index]), "value": float(p[place]), "stated": stated}

@@ -5,10 +5,9 @@ import numpy as np
 from diagnosis.fit.free_numbers import Free
 from diagnosis.fit.known_before import away
 from diagnosis.fit.linear_problem import Fit
-from diagnosis.hypothesis.case import Case
 
 
-def moved_parameters(case: Case, theta: np.ndarray, far: float) -> list[int]:
+def moved_parameters(theta: np.ndarray, far: float) -> list[int]:
     """Free coefficients (indices into theta) further than `far` from what is stated, the furthest first."""
     return [index for index in np.argsort(-np.abs(theta)).tolist() if abs(theta[index]) > far]
 

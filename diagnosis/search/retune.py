@@ -131,7 +131,7 @@ def _factors(case: Case, wider: Mapping[int | str, float]) -> Array:
 def _told(case: Case, stated: Fit, explained: float, wider: Collection[int | str]) -> Retune | None:
     """What left the stated spreads in a fit that counts in these; None where nothing did."""
     theta = stated.hypothesis.theta
-    far = [place for place in moved_parameters(case, theta, decisions.BEYOND_CHANCE) if place in wider]
+    far = [place for place in moved_parameters(theta, decisions.BEYOND_CHANCE) if place in wider]
     numbers = [entry for entry in moved_effects(stated, decisions.BEYOND_CHANCE) if entry.effect in wider]
     if not far and not numbers:
         return None

@@ -37,10 +37,10 @@ def turned_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts
             rows = np.union1d(rows, _turns_at_zero(t_s, values, log.sample_period_s, step))
         rows = rows[flights[read][rows] == flights[read][rows - 1]]
         if rows.size:
-            yield _found(log, name, column, t_s, values, rows)
+            yield _found(name, column, t_s, values, rows)
 
 
-def _found(log: RunLog, name: str, column: str, t_s: Array, values: Array, rows: NDArray[np.int64]) -> Found:
+def _found(name: str, column: str, t_s: Array, values: Array, rows: NDArray[np.int64]) -> Found:
     at = ", ".join(f"{t:.6g} s" for t in t_s[rows[: thresholds.TIMES_SHOWN]])
     more = f" and {len(rows) - thresholds.TIMES_SHOWN} times more" if len(rows) > thresholds.TIMES_SHOWN else ""
     before, behind = values[rows[0] - 1], values[rows[0]]

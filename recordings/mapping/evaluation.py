@@ -1,6 +1,6 @@
 """The tree of an expression and its value: the nodes, the functions that there are, and how units pass through them."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -122,15 +122,6 @@ def evaluate(node: Node, look_up: Callable[[Reference], Quantity], period: Calla
         values.append(np.asarray(period(unit)))
     with np.errstate(all="ignore"):  # what comes of it is looked at as a whole
         return Quantity(np.asarray(_CALLS[node.name](*values), dtype=float), unit)
-
-
-def references(node: Node) -> Iterator[Reference]:
-    """Every reference of a tree, from left to right."""
-    if isinstance(node, Reference):
-        yield node
-    elif isinstance(node, Operation):
-        for argument in node.arguments:
-            yield from references(argument)
 
 
 def _unit(node: Operation, arguments: list[Quantity]) -> str | None:

@@ -130,7 +130,7 @@ def picked(reference: Reference, column_name: str, of: Source) -> tuple[str, Arr
         raise ambiguous({column_name: error}, of) from error
     if base is None:
         raise _unknown(reference.text, column_name, of)
-    return base, _pick(base, reference, column_name, of)
+    return base, _pick(base, reference, of)
 
 
 def _vector(name: str, values: Array, column_name: str, of: Source) -> Array:
@@ -142,7 +142,7 @@ def _vector(name: str, values: Array, column_name: str, of: Source) -> Array:
     raise BadInput(f"signal {name!r}", of.where, f"a matrix of {shape}", "one vector", remedy)
 
 
-def _pick(name: str, reference: Reference, column_name: str, of: Source) -> Array:
+def _pick(name: str, reference: Reference, of: Source) -> Array:
     """A row or column of an array; a vector has one of them."""
     values, picks = of.signals[name].values, reference.picks
     if values.ndim == 1 and len(picks) == 2 and picks.count(None) == 1:

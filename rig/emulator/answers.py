@@ -41,7 +41,6 @@ class CallsResult:
     cycles: NDArray[np.uint64]
     outputs: tuple[NDArray[np.uint8], ...]
     instructions: int
-    cycles_flash_sum: int
     stack_bytes: int
 
     @property

@@ -51,9 +51,8 @@ class Caller:
             self._blocks(rows), len(rows), self._blocks(wells), len(wells),
             cast("uint32_t *", results.ctypes.data), cast("uint64_t *", cycles.ctypes.data), report,
         )  # fmt: skip
-        estimate = int(cycles.sum()) + self._wait_states * int(report.flash_stalls)
         given = tuple(out for _, out in wells)
-        answer = CallsResult(results, cycles, given, report.instructions, estimate, report.stack_bytes)
+        answer = CallsResult(results, cycles, given, report.instructions, report.stack_bytes)
         return report.stop_kind, answer
 
     def _blocks(self, rows: Sequence[tuple[int, NDArray[np.uint8]]]) -> Any:

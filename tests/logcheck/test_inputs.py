@@ -16,7 +16,9 @@ def test_saturation_and_inputs_beyond_the_limits_are_shares_of_the_rows() -> Non
     u[:500, 1], u[500:600, 0] = 10.0, 11.0
     found = examined(replace(log, u=u))
     assert kinds(found) == {"saturated", "beyond_limits"}
-    assert found.logs[0].saturation["u_T_V"].upper == pytest.approx(500 / 2001)
+    # Truth: 500 of 2001 rows.
+    (saturated,) = (entry for entry in found.findings if entry.kind == "saturated" and entry.column == "u_T_V")
+    assert "25.0% of the rows at 10 V" in saturated.sentence
 
 
 def test_an_input_at_its_limit_in_one_stretch_is_told_from_when_to_when() -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from logcheck.stamps import timing
 from records.reasons import DOUBTS
 from tests.logcheck.flight import clean, examined, kinds
 from tests.replay.firmware_flights import rows_of
@@ -12,10 +13,11 @@ from tests.replay.firmware_flights import rows_of
 
 def test_missing_rows_are_counted_by_time_and_by_number() -> None:
     log, kept = clean(), np.ones(2001, bool)
+    assert (timing(log).missing_by_time, timing(log).missing_by_seq) == (0, None)
     kept[[300, 301, 900]] = False
-    found = examined(rows_of(replace(log, seq=np.arange(2001)), kept))
-    assert kinds(found) == {"missing_rows", "sequence_gap"}
-    assert (found.logs[0].timing.missing_by_time, found.logs[0].timing.missing_by_seq) == (3, 3)
+    gappy = rows_of(replace(log, seq=np.arange(2001)), kept)
+    assert kinds(examined(gappy)) == {"missing_rows", "sequence_gap"}
+    assert (timing(gappy).missing_by_time, timing(gappy).missing_by_seq) == (3, 3)
     closed_up = replace(rows_of(replace(log, seq=np.arange(2001)), kept), t_s=log.t_s[:-3])
     assert kinds(examined(closed_up)) == {"sequence_gap", "sequence_against_time"}
 
@@ -32,9 +34,9 @@ def test_repeated_and_disordered_rows_are_left_out() -> None:
 
 def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
     log = clean()
-    off = examined(replace(log, t_s=log.t_s * 1.002))
-    assert kinds(off) == {"sample_period"}
-    assert off.logs[0].timing.period_error_ppm == pytest.approx(2000.0, rel=1e-6)
+    off = replace(log, t_s=log.t_s * 1.002)
+    assert kinds(examined(off)) == {"sample_period"}
+    assert timing(off).period_error_ppm == pytest.approx(2000.0, rel=1e-6)
     thinned = replace(log, t_s=log.t_s * 2.0)
     (found,) = examined(thinned).findings
     assert (found.kind, found.kind in DOUBTS) == ("thinned_rows", True)
@@ -54,16 +56,16 @@ def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
     )  # an input that stands was known between them
     assert "thinned_rows" not in kinds(examined(slow))
     late_s = np.random.default_rng(4).uniform(0.0, 1e-3, 2001)
-    jittered = examined(replace(log, t_s=log.t_s + late_s))
-    assert kinds(jittered) == {"jitter"}
+    jittered = replace(log, t_s=log.t_s + late_s)
+    assert kinds(examined(jittered)) == {"jitter"}
     # Truth: rows up to 4 ms early or late, all of them there; and rows up to 1 ms late, of which one is not.
     rough = replace(log, t_s=log.t_s + np.random.default_rng(6).uniform(-4e-3, 4e-3, 2001))
     assert kinds(examined(rough)) == {"jitter"}
-    one_less = examined(rows_of(replace(log, t_s=log.t_s + late_s), np.arange(2001) != 700))
-    assert (kinds(one_less), one_less.logs[0].timing.missing_by_time) == ({"jitter", "missing_rows"}, 1)
-    assert jittered.logs[0].timing.jitter_rms_s == pytest.approx(1e-3 * np.sqrt(1.0 / 6.0), rel=0.05)
+    one_less = rows_of(jittered, np.arange(2001) != 700)
+    assert (kinds(examined(one_less)), timing(one_less).missing_by_time) == ({"jitter", "missing_rows"}, 1)
+    assert timing(jittered).jitter_rms_s == pytest.approx(1e-3 * np.sqrt(1.0 / 6.0), rel=0.05)
     # Truth: rows 10 ms apart on average, each late by its own 2 ms rms: 2000 of these move the mean by 4500 ppm rms, and not the clock.
     steps_s = 0.01 + np.random.default_rng(5).uniform(-1.0, 1.0, 2000) * 2e-3 * np.sqrt(3.0)
-    waiting = examined(replace(log, t_s=np.concatenate([[0.0], np.cumsum(steps_s)])))
-    assert abs(waiting.logs[0].timing.period_error_ppm) > 500.0
-    assert "sample_period" not in kinds(waiting)
+    waiting = replace(log, t_s=np.concatenate([[0.0], np.cumsum(steps_s)]))
+    assert abs(timing(waiting).period_error_ppm) > 500.0
+    assert "sample_period" not in kinds(examined(waiting))

@@ -141,7 +141,7 @@ class RealLab:
 def draw_bench(plant: RealPlant, given: Rig, plan: Plan, rng: Generator) -> Bench:
     """All of a case but its effects: what its plant file states, the rig itself, its errors, how its logs are made."""
     denied = sorted({effect.hides for effect in plan.effects if effect.hides} | _absent(given, rng))
-    known, changes = draw_stated(plant, given, denied, rng)
+    known, changes = draw_stated(given, denied, rng)
     true = draw_true(known, rng)
     styles = _draw_styles(plant, rng)
     lively = float(rng.uniform(0.75, 1.0) if plan.excited else rng.uniform(0.4, 0.7))

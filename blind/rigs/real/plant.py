@@ -155,9 +155,7 @@ def _stated(entry: Mapping[str, Any], kind: str) -> float:
     return float(next((value for name, value in entry.items() if name.startswith(kind)), 0.0))
 
 
-def draw_stated(
-    plant: RealPlant, given: Rig, denied: Sequence[str], rng: Generator
-) -> tuple[Rig, Mapping[tuple[str, str], str]]:
+def draw_stated(given: Rig, denied: Sequence[str], rng: Generator) -> tuple[Rig, Mapping[tuple[str, str], str]]:
     """(the rig as stated, what its plant file says otherwise): each spread 2 to 5 % of its value, in one case of four 5 to 15 %.
 
     Conventions and limits, of sd 0, stay exact; `denied` are stated as 0.

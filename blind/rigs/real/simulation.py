@@ -100,7 +100,7 @@ def fly(plant: RealPlant, body: Body, model: Model, shadows: Sequence[Model], in
     for each, entry in zip(models, (model, *shadows), strict=True):
         _fill(each, plant, body, entry, inputs.locked)
     mode = ffi.new("unsigned char[]", [STARTS_FROM_SHOWN * s.placed + LOSES_FRAMES * s.loses for s in shadows])
-    run = ffi.new("run_t *", _run_fields(ffi, plant, model.rig, inputs))
+    run = ffi.new("run_t *", _run_fields(ffi, model.rig, inputs))
     window = round(1.0 / inputs.period_s)
     lib.fly(models, run, pointer(ffi, inputs.start), count, models + 1, mode, window, out)
     log = {name: array[inputs.settle :] for name, array in arrays.items()}
@@ -141,7 +141,7 @@ def predict(plant: RealPlant, body: Body, rig: Rig, record: Record, step_s: floa
     return out[:, : len(plant.outputs)]
 
 
-def _run_fields(ffi: Any, plant: RealPlant, rig: Rig, inputs: RealInputs) -> dict[str, Any]:
+def _run_fields(ffi: Any, rig: Rig, inputs: RealInputs) -> dict[str, Any]:
     steps = max(1, round(inputs.period_s / STEP_S))
     return {
         "rows": len(inputs.reference),

@@ -109,7 +109,7 @@ def test_data_cannot_tell_where_most_of_the_library_would_go_unseen() -> None:
 
 def test_numbers_that_left_their_spread_are_told_furthest_first() -> None:
     linearisation = plain_linearisation()
-    assert moved_parameters(linearisation.case, np.array([0.5, -4.0, 3.5]), 3.0) == [1, 2]
+    assert moved_parameters(np.array([0.5, -4.0, 3.5]), 3.0) == [1, 2]
     assert moved_effects(linearisation.fit, 3.0) == []  # the plant file states no effect
 
 
@@ -117,7 +117,7 @@ def test_numbers_that_left_their_spread_are_told_furthest_first() -> None:
 def test_a_plain_run_moves_nothing_far(far: float) -> None:
     linearisation = plain_linearisation()
     theta = linearisation.fit.hypothesis.theta
-    assert len(moved_parameters(linearisation.case, theta, far)) == int((np.abs(theta) > far).sum())
+    assert len(moved_parameters(theta, far)) == int((np.abs(theta) > far).sum())
 
 
 def test_where_nothing_is_uncertain_effects_are_still_scored() -> None:
