@@ -35,7 +35,7 @@ class AxisReport:
     """One axis over the angles psi_rad of the report.
 
     `poles_fitted_rad_s` and `poles_flown_rad_s` have shape (angles, poles); `margins` and `controller_radius`, the largest |z| of the
-    controller's own poles, belong to the table as its arithmetic rounds it, as it flies. `largest_q_V_rad` is that of eq (22).
+    controller's own poles, belong to the table as its arithmetic rounds it, as it flies.
     `scheduled` has the feedback and `operating_V` (points,) the voltage at each operating point, `schedule` and `feedforward_V` are the
     polynomials fitted to them; `plants` (angles,) are what the law is closed around at `psi_rad` (angles,).
     """
@@ -43,7 +43,6 @@ class AxisReport:
     axis: str
     poles_rad_s: tuple[complex, ...]
     free_degree: str
-    largest_q_V_rad: float
     condition: float
     fit_error: FitError
     feedforward_error_V: float
@@ -248,7 +247,6 @@ def _axis_report(survey: _Survey, points: DesignPoints, axis: str) -> AxisReport
         axis=axis,
         poles_rad_s=scheduled.wishes.placed_rad_s,
         free_degree=scheduled.wishes.free_degree,
-        largest_q_V_rad=max(float(np.max(np.abs(design.placement.controller.q))) for design in designs),
         condition=max(design.placement.condition for design in designs),
         fit_error=fit_error(scheduled.grid_rad, scheduled.designs, scheduled.schedule),
         feedforward_error_V=float(np.max(np.abs(polyval(points.psi_rad, feedforward_V) - operating_V))),
