@@ -163,6 +163,31 @@ def _is_package(folder: str) -> bool:
     return (ROOT / folder / "__init__.py").exists()
 
 
+MOST_ARGUMENTS = 6
+AS_IN_C = {  # the law's functions have those of their C, and what is a constant there: the law's numbers, the axis', the arithmetic
+    "codegen/fixed/equations.py:drive",
+    "codegen/fixed/equations.py:step_axis",
+    "codegen/law_equations.py:drive",
+}
+
+
+def _arguments(function: ast.FunctionDef) -> int:
+    """How many it takes, but for its own object."""
+    own = function.args
+    return sum(entry.arg not in ("self", "cls") for entry in (*own.posonlyargs, *own.args, *own.kwonlyargs))
+
+
+def test_what_belongs_together_is_handed_on_as_a_record() -> None:
+    paths = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
+    long = {
+        f"{path.relative_to(ROOT).as_posix()}:{node.name}"
+        for path in paths
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and _arguments(node) > MOST_ARGUMENTS
+    }
+    assert long == AS_IN_C
+
+
 # "A log in; its findings out", "From a log to its findings", "A log goes in, its findings come out".
 IN_AND_OUT = re.compile(r"\bin[;,:]? .*\bout\b|^From .* to ", re.DOTALL)
 
