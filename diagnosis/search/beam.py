@@ -17,7 +17,7 @@ from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink
-from diagnosis.search.fitting import Job, in_all_logs, is_astray, keep_better, once_more, refined, rough
+from diagnosis.search.fitting import Proposal, in_all_logs, is_astray, keep_better, once_more, refined, rough
 from diagnosis.search.noise_beside import with_noise_beside, with_noise_of
 from diagnosis.search.own_events import with_own_events
 from diagnosis.search.sure_sizes import is_certain, kept_by_size
@@ -90,9 +90,9 @@ def first_fits(
     if lossy is not None and case.library.losses is not None:
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
     least = max(decisions.chance_nats(), decisions.NEGLIGIBLE_SHARE * score_tests[0].gain) if score_tests else 0.0
-    jobs = _promising(nominal.fit, score_tests, least)[: decisions.SINGLES]
-    jobs += _promising(nominal.fit, scored_as_stated(case, nominal.fit), least)[: decisions.SINGLES]
-    begun = first_of_each(case, jobs, found)
+    proposals = _promising(nominal.fit, score_tests, least)[: decisions.SINGLES]
+    proposals += _promising(nominal.fit, scored_as_stated(case, nominal.fit), least)[: decisions.SINGLES]
+    begun = first_of_each(case, proposals, found)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
     return FirstFits(found, tuple(begun), nominal, linearisation, tuple(score_tests))
@@ -192,9 +192,9 @@ def _same_so_far(case: Case, entry: FittedHypothesis, other: FittedHypothesis) -
     return other.evidence - entry.evidence <= decisions.PLAIN_TO_SEE and is_twin(case.library, entry, other)
 
 
-def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> list[Job]:
+def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> list[Proposal]:
     """Effects that gain more than `least` from `start`, best first."""
-    return [Job(start, entry) for entry in score_tests if entry.gain > least]
+    return [Proposal(start, entry) for entry in score_tests if entry.gain > least]
 
 
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: FittedHypothesis) -> None:
@@ -214,18 +214,18 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
 
 def _grown(
     case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], worth: frozenset[str]
-) -> tuple[list[Job], frozenset[str]]:
+) -> tuple[list[Proposal], frozenset[str]]:
     """The best hypotheses, each with the further effects that promise most beside it and beside one another, none where the first has none;
     and the effects that are `worth` a costly score test beside others.
 
     Beside the best single effect all are asked: under a plant that lacks it others may show nothing.
     """
 
-    def asked(fitted: FittedHypothesis, worth: frozenset[str] | None) -> tuple[list[ScoreTest], list[Job]]:
+    def asked(fitted: FittedHypothesis, worth: frozenset[str] | None) -> tuple[list[ScoreTest], list[Proposal]]:
         linearisation = linearised(case, fitted.fit)
         score_tests = score_effects(case, linearisation, names, worth)
         promising = [entry for entry in score_tests if entry.gain > decisions.TAKEN_IN][: decisions.most_asked()]
-        return score_tests, [Job(fitted.fit, entry) for entry in unlike(linearisation, promising, decisions.NEXT)]
+        return score_tests, [Proposal(fitted.fit, entry) for entry in unlike(linearisation, promising, decisions.NEXT)]
 
     if not best:
         return [], worth
@@ -233,20 +233,20 @@ def _grown(
     score_tests, first = asked(best[0], None if single else worth)
     worth = worth | _worth(score_tests) if single else worth
     others = thread_map(lambda fitted: asked(fitted, worth)[1], best[1:])
-    return ([job for own in (first, *others) for job in own] if first else []), worth
+    return ([proposal for own in (first, *others) for proposal in own] if first else []), worth
 
 
-def _names_of(case: Case, job: Job) -> frozenset[str]:
-    return frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect))
+def _names_of(case: Case, proposal: Proposal) -> frozenset[str]:
+    return frozenset((*case.added(proposal.start.hypothesis.effects), proposal.score_test.effect))
 
 
 def first_of_each(
-    case: Case, jobs: Sequence[Job], known: Mapping[frozenset[str], FittedHypothesis]
+    case: Case, proposals: Sequence[Proposal], known: Mapping[frozenset[str], FittedHypothesis]
 ) -> list[FittedHypothesis]:
-    """The first fit of each job that is new, the better one where two lead to the same effects: they may end on other hills."""
-    wanted = [job for job in jobs if _names_of(case, job) not in known]
+    """The first fit of each proposal that is new, the better one where two lead to the same effects: they may end on other hills."""
+    wanted = [proposal for proposal in proposals if _names_of(case, proposal) not in known]
     firsts: dict[frozenset[str], FittedHypothesis] = {}
-    keep_better(firsts, (entry for entry in thread_map(lambda job: rough(case, job), wanted) if entry))
+    keep_better(firsts, (entry for entry in thread_map(lambda proposal: rough(case, proposal), wanted) if entry))
     return list(firsts.values())
 
 

@@ -18,7 +18,7 @@ from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import EffectLibrary
-from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
+from diagnosis.search.fitting import Proposal, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
 
 # Behind, under one noise, with what a further step promises: of thirty such twins noise set anew left none less than 180 nats behind.
@@ -47,7 +47,7 @@ def shrink(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     largest = sorted((e for e in found.values() if len(e.effects) == size > 1), key=lambda entry: -entry.evidence)
     near = [entry for entry in largest if entry.evidence > largest[0].evidence - decisions.PLAIN_TO_SEE]
     fewer = {frozenset(entry.effects) - {name}: (entry, name) for entry in reversed(near) for name in entry.effects}
-    wanted = {names: job for names, job in fewer.items() if not _is_near(found.get(names), job[0])}
+    wanted = {names: grown for names, grown in fewer.items() if not _is_near(found.get(names), grown[0])}
     starts = thread_map(lambda names: _shrunk(case, *wanted[names], found.get(names)), list(wanted))
     begun = [as_fitted(case, start) for start in starts if start is not None]
     keep_better(found, [*begun, *(entry for entry in thread_map(lambda fit: refined(case, fit), begun) if entry)])
@@ -88,7 +88,7 @@ def _twins_begun(
     linear problem knows nothing of where a spring rests."""
     rest = frozenset(first.effects) - {name}
     wanted = {twin for twin in twins_of(case.library, name) if not _is_near(found.get(rest | {twin}), first)}
-    promised = {job.score_test.effect: job for job in _instead(case, first, name, wanted)}
+    promised = {proposal.score_test.effect: proposal for proposal in _instead(case, first, name, wanted)}
     lack, starts = first.fit.hypothesis.lacks.get(name), []
     for twin in sorted(wanted):
         begun = [promised[twin].begun(case)] if twin in promised else []
@@ -144,8 +144,9 @@ def _exchanged(
     case: Case, best: FittedHypothesis, found: dict[frozenset[str], FittedHypothesis], worth: Set[str]
 ) -> FittedHypothesis | None:
     """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
-    jobs = [job for jobs in thread_map(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
-    fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job.begun(case)), jobs) if entry]
+    proposed = thread_map(lambda name: _instead(case, best, name, worth), best.effects)
+    proposals = [proposal for own in proposed for proposal in own]
+    fitted = [entry for entry in thread_map(lambda one: at_its_place(case, one.begun(case)), proposals) if entry]
     keep_better(found, fitted)
     first = max((entry.evidence for entry in fitted), default=-np.inf)
     near = [entry for entry in fitted if entry.evidence > max(first, best.evidence) - decisions.PLAIN_TO_SEE]
@@ -155,7 +156,7 @@ def _exchanged(
     return end if end.evidence > best.evidence + LITTLE_NATS else None
 
 
-def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Job]:
+def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Proposal]:
     """Effects that promise most in the place of `name`, all else as it was fitted."""
     hypothesis = fitted.fit.hypothesis
     start = fit(case, _without(hypothesis, name), rounds=0) if worth else None
@@ -163,7 +164,7 @@ def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -
         return []
     score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
     least = max(decisions.TAKEN_IN, decisions.NEGLIGIBLE_SHARE * (fitted.fit.log_likelihood - start.log_likelihood))
-    return [Job(start, entry) for entry in score_tests if entry.gain > least][: decisions.NEXT]
+    return [Proposal(start, entry) for entry in score_tests if entry.gain > least][: decisions.NEXT]
 
 
 def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:

@@ -35,7 +35,7 @@ FRICTION_FACTORS = np.geomspace(
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class Proposal:
     """A further effect to fit from a start."""
 
     start: Fit
@@ -54,19 +54,19 @@ class Job:
         ]
 
 
-def rough(case: Case, job: Job) -> FittedHypothesis | None:
+def rough(case: Case, proposal: Proposal) -> FittedHypothesis | None:
     """A first joint fit, under the process noise that was there before, the better one where it may begin at several values."""
-    found = [_rough(case, job, start) for start in job.all_begun(case)]
+    found = [_rough(case, proposal, start) for start in proposal.all_begun(case)]
     return max((entry for entry in found if entry), key=lambda entry: entry.evidence, default=None)
 
 
-def _rough(case: Case, job: Job, start: Hypothesis) -> FittedHypothesis | None:
-    entry = job.score_test
+def _rough(case: Case, proposal: Proposal, start: Hypothesis) -> FittedHypothesis | None:
+    entry = proposal.score_test
     if is_rough(case, entry.effect):
         start = polished(case, start, entry.effect, POLISHING)
     stated = _from_stated(case, start) if is_astray(start, decisions.ASTRAY) else None
     found = stated or fit(case, start, rounds=4)
-    if found is not None and found.log_posterior < job.start.log_posterior:
+    if found is not None and found.log_posterior < proposal.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
     if stated is None and (found is None or is_astray(found.hypothesis, decisions.ASTRAY)):

@@ -10,7 +10,7 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.hypothesis import passes
-from diagnosis.search.fitting import Job, refined, rough
+from diagnosis.search.fitting import Proposal, refined, rough
 from tests.diagnosis.arm import arm, arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
 
@@ -63,7 +63,7 @@ def test_a_spring_in_one_of_two_logs_is_fitted_to_that_one() -> None:
     case = arm_case(arm_log(SPRING, seed=21, seconds=10.0), arm_log(seed=22, seconds=10.0))
     nominal = nominal_fit(case)
     (seen,) = score_effects(case, linearised(case, nominal), list(SPRING))
-    begun = rough(case, Job(nominal, seen))
+    begun = rough(case, Proposal(nominal, seen))
     assert begun is not None
     end = refined(case, begun)
     assert end is not None

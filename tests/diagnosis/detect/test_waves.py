@@ -10,7 +10,7 @@ from diagnosis.detect.waves import likely_waves, wave_starts
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.fitting import Job, rough
+from diagnosis.search.fitting import Proposal, rough
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
@@ -74,7 +74,7 @@ def test_a_sine_explains_more_than_a_springy_part(plant: BoundPlant, fly: Fly) -
     nominal = nominal_fit(case)
     names = ("elevation.periodic_torque", "elevation.flexible_mode")
     tests = {entry.effect: entry for entry in score_effects(case, linearised(case, nominal), names)}
-    sine, springy = (rough(case, Job(nominal, tests[name])) for name in names)
+    sine, springy = (rough(case, Proposal(nominal, tests[name])) for name in names)
     assert sine is not None
     assert springy is None or sine.evidence > springy.evidence + 20.0
     found = sine.fit.hypothesis.effects[names[0]]

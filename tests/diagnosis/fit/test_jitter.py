@@ -12,7 +12,7 @@ from diagnosis.fit.jitter import jitter_sd, most_shown_s, with_jitter
 from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.fitting import Job, refined, rough
+from diagnosis.search.fitting import Proposal, refined, rough
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant
@@ -43,7 +43,7 @@ def test_the_fit_of_a_delay_finds_its_scatter(plant: BoundPlant) -> None:
     case = make_case(effect_library(plant), [late_flight(plant, JITTER_S)])
     nominal = nominal_fit(case)
     (seen,) = score_effects(case, linearised(case, nominal), [DELAY])
-    begun = rough(case, Job(nominal, seen))
+    begun = rough(case, Proposal(nominal, seen))
     assert begun is not None
     found = refined(case, begun)
     assert found is not None

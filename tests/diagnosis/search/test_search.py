@@ -21,7 +21,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.beam import Alone, Search, first_of_each, search, worth_ending
 from diagnosis.search.exchange import exchange, fit_twins, shrink
-from diagnosis.search.fitting import Job, once_more, refined, rough
+from diagnosis.search.fitting import Proposal, once_more, refined, rough
 from diagnosis.search.sure_sizes import certainties
 from sim.added_effects import library
 from sim.bind import BoundPlant
@@ -176,7 +176,7 @@ def test_an_effect_that_parameters_imitate_in_part_is_fitted_without_going_astra
     case = make_case(effect_library(plant), logs)
     nominal = nominal_fit(case)
     (seen,) = score_effects(case, linearised(case, nominal), list(WARMING))
-    begun = rough(case, Job(nominal, seen))
+    begun = rough(case, Proposal(nominal, seen))
     assert begun is not None
     found = refined(case, begun)
     assert found is not None
@@ -198,7 +198,7 @@ def springy() -> tuple[Case, Fit, ScoreTest]:
 def test_a_mode_between_two_starts_is_found_from_the_better_hill() -> None:
     # Truth: 27 rad/s, 236 nats above the hill of the first start, whose part swings against the axis.
     case, nominal, seen = springy()
-    ends = [rough(case, Job(nominal, test)) for test in (seen, replace(seen, others=()))]
+    ends = [rough(case, Proposal(nominal, test)) for test in (seen, replace(seen, others=()))]
     found, from_one = (refined(case, entry) for entry in ends if entry is not None)
     assert found is not None
     assert from_one is not None
@@ -209,7 +209,7 @@ def test_a_mode_between_two_starts_is_found_from_the_better_hill() -> None:
 def test_of_two_ways_to_the_same_effects_the_better_is_kept_whichever_comes_first() -> None:
     # Truth: a part that swings with the axis; from 25 rad/s it would be against it.
     case, nominal, seen = springy()
-    ways = [Job(nominal, replace(seen, values=start.values, others=())) for start in seen.starts]
+    ways = [Proposal(nominal, replace(seen, values=start.values, others=())) for start in seen.starts]
     ends = [first_of_each(case, order, {}) for order in (ways, ways[::-1])]
     assert [len(end) for end in ends] == [1, 1]
     assert ends[0][0].evidence == ends[1][0].evidence
