@@ -28,7 +28,7 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Search
-from records.diagnosis import Diagnosis, Hypothesis, Unknown
+from records.diagnosis import Diagnosis, RankedHypothesis, Unknown
 
 
 def gap(seen: Seen, material: Material, judged: Judged) -> Result:
@@ -131,7 +131,7 @@ def _innovations(case: Case, fitted: FittedHypothesis) -> list[NDArray[np.float6
     return [] if runs is None else [run.w for run in runs]
 
 
-def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probability: float) -> Hypothesis:
+def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probability: float) -> RankedHypothesis:
     classes = [case.library.effects[name].class_text for name in fitted.effects]
     own = estimates(case, _tempered(case, fitted, weighed.scale))
     single = len(fitted.effects) == 1
@@ -142,7 +142,7 @@ def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probabil
     }
     same = [*_other_names(case, fitted.effects), *(entry.effects for entry in alike(weighed, fitted))]
     told = tuple(" + ".join(sorted(effects)) for effects in same)
-    return Hypothesis(" + ".join(fitted.effects), " + ".join(classes), probability, parameters, told)
+    return RankedHypothesis(" + ".join(fitted.effects), " + ".join(classes), probability, parameters, told)
 
 
 def _tempered(case: Case, fitted: FittedHypothesis, scale: float) -> FittedHypothesis:

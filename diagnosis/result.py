@@ -78,7 +78,7 @@ class Seen:
     beside: FittedHypothesis | None = None
     begun: Alone | None = None
     still: "Seen | None" = None
-    held: "Held | None" = None
+    held: "HeldInputs | None" = None
 
     @property
     def tests(self) -> tuple[ScoreTest, ...]:
@@ -92,7 +92,7 @@ class Seen:
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class HeldInputs:
     """The logs with inputs held from row to row, those to check on likewise, the plant's fit, and the nats by which several commands a row
     are likelier."""
 

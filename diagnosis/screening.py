@@ -20,7 +20,7 @@ from diagnosis.fit.nominal import best_plain_fit, plain_beside, plain_from, with
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
-from diagnosis.result import Held, Material, Seen
+from diagnosis.result import HeldInputs, Material, Seen
 from diagnosis.search.beam import Alone, FirstFits, alone, first_fits
 from diagnosis.search.draughts import gust_shares, without_memory
 from diagnosis.search.lost_frames import with_losses
@@ -67,7 +67,7 @@ def _detected(
     beside: FittedHypothesis | None = None,
 ) -> Seen:
     commands, nominal, between = between_rows(case, as_held)
-    held = Held(case, checked, as_held, between[0].value or 0.0) if nominal is not as_held else None
+    held = HeldInputs(case, checked, as_held, between[0].value or 0.0) if nominal is not as_held else None
     logs = case if held is None else with_commands(case, commands)
     others = None if checked is None or held is None else with_commands(checked, commands)
     seen, names = _screened(logs, others or checked, noisy(logs, nominal), between, beside)

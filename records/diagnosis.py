@@ -127,7 +127,7 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class RankedHypothesis:
     """One effect or several jointly ("a.b + c.d"), what it depends on and acts on, how probable it is, and what looks the same."""
 
     effect: str
@@ -227,7 +227,7 @@ class Diagnosis:
     bands: tuple[Band, ...] = ()
     error_responses: tuple[ErrorResponse, ...] = ()
     firmware: Firmware | None = None
-    effects: tuple[Hypothesis, ...] = ()
+    effects: tuple[RankedHypothesis, ...] = ()
     unknown: Unknown = Unknown(0.0)
     partly: float = 0.0
     found: tuple[str, ...] = ()

@@ -11,7 +11,7 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.baselines.windows import Array, Windows, errors, windows_of
-from records.diagnosis import Diagnosis, Estimate, Hypothesis, PlaceShare, Unknown
+from records.diagnosis import Diagnosis, Estimate, PlaceShare, RankedHypothesis, Unknown
 from records.log import RunLog
 from sim.added_effects import combined, library, redundant, with_values
 from sim.bind import BoundPlant
@@ -53,7 +53,7 @@ def _answer(plain: float, fits: list[tuple[float, Estimate, Effect]]) -> Diagnos
     weights /= weights.sum()
     gap = bool(fits and fits[0][0] < plain)
     effects = tuple(
-        Hypothesis(effect.name, effect.class_text, float(weight), {effect.size.symbol: estimate})
+        RankedHypothesis(effect.name, effect.class_text, float(weight), {effect.size.symbol: estimate})
         for weight, (_, estimate, effect) in list(zip(weights[1:], fits, strict=True))[:NAMES_TOLD]
     )
     return Diagnosis(

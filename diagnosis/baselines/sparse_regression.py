@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from diagnosis.baselines.windows import Array, derivatives, measured_axes, states_of
-from records.diagnosis import Diagnosis, Hypothesis, PlaceShare, Unknown
+from records.diagnosis import Diagnosis, PlaceShare, RankedHypothesis, Unknown
 from records.log import RunLog
 from sim.added_effects import every_effect
 from sim.bind import BoundPlant
@@ -44,7 +44,7 @@ def by_sparse_regression(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis
         verdict="gap" if gap else "no gap",
         false_alarm_probability=None,
         places=(PlaceShare(best.axis, 1.0),) if gap else (),
-        effects=(Hypothesis(effect, f"torque({best.term}) on {best.axis}", best.share, {}),) if gap else (),
+        effects=(RankedHypothesis(effect, f"torque({best.term}) on {best.axis}", best.share, {}),) if gap else (),
         unknown=Unknown(1.0 - best.share, best.axis) if gap else Unknown(0.0),
         found=(effect,) if gap else (),
     )

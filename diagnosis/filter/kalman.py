@@ -17,7 +17,7 @@ Disturbances = Callable[[slice], Array]
 
 
 @dataclass(frozen=True, eq=False)
-class Noise:
+class FilterNoise:
     """What the filter takes as random: q (states,) intensities of the rates, rub (axes,) see filter.h, p0 (states,) start variances.
 
     `forget` (states,) is the rate, in 1/s, at which a state that is noise alone decays, 0 for all others; `drive` (states,) the variance
@@ -33,7 +33,7 @@ class Noise:
     rest_s: float
 
 
-def slope_of(noise: Noise, other: Noise, by: float) -> Noise:
+def slope_of(noise: FilterNoise, other: FilterNoise, by: float) -> FilterNoise:
     """How a noise changes with a number, `by` so much of which it becomes the other."""
     return replace(
         noise, **{name: (getattr(other, name) - getattr(noise, name)) / by for name in ("q", "rub", "p0", "forget")}
@@ -47,7 +47,7 @@ class Wanted:
 
     slots: Sequence[int]
     columns: Sequence[int] = ()
-    noises: Sequence[Noise] = ()
+    noises: Sequence[FilterNoise] = ()
     slopes: bool = False
     gains: bool = False
 
@@ -90,7 +90,7 @@ class Filter:
         filter_input: FilterInput,
         p: Array,
         x0: Array,
-        noise: Noise,
+        noise: FilterNoise,
         wanted: Wanted,
         locked: Sequence[str] = (),
     ) -> Pass | None:
@@ -124,7 +124,7 @@ class Filter:
         gains = None if F is None or K is None or H is None else (F, K, H)
         return Pass(**found, gram=gram, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
 
-    def _rubbing(self, noise: Noise) -> Noise:
+    def _rubbing(self, noise: FilterNoise) -> FilterNoise:
         """The noise with one doubt of friction, which counts for nothing, where there is no axis."""
         return noise if self.axes else replace(noise, rub=np.zeros(1))
 
@@ -218,7 +218,7 @@ class Filter:
         return found.reshape(*run.w.shape, -1)
 
 
-def _given(filter_input: FilterInput, p: Array, x0: Array, noise: Noise) -> dict[str, NDArray[Any] | None]:
+def _given(filter_input: FilterInput, p: Array, x0: Array, noise: FilterNoise) -> dict[str, NDArray[Any] | None]:
     """What a run reads of a log, the parameters and the noise, as in filter.h."""
     return {
         "t_s": _double(filter_input.t_s),
@@ -246,7 +246,7 @@ def _added(filter_input: FilterInput, states: int) -> dict[str, NDArray[Any] | N
     return {"added": _double(added.over_steps(filter_input.t_s, states)), "y": y}
 
 
-def _slopes(noises: Sequence[Noise]) -> dict[str, NDArray[Any] | None]:
+def _slopes(noises: Sequence[FilterNoise]) -> dict[str, NDArray[Any] | None]:
     """The slopes of the noise by its numbers, as in filter.h."""
     names = ("q", "p0", "forget", "rub")
     return {f"{name}_by": _double([getattr(by, name) for by in noises]) for name in names} if noises else {}

@@ -25,7 +25,7 @@ LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of t
 @dataclass(frozen=True, eq=False)
 class FilteredLog:
     """One log as the filter takes it: its number among all, filter input, start x0 and its variances p0 (states,), axes held; `drive`
-    (states,) as in filter.Noise."""
+    (states,) as in FilterNoise."""
 
     number: int
     log: RunLog

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput, variance_stated
-from diagnosis.filter.kalman import Noise, Pass, Wanted, slope_of
+from diagnosis.filter.kalman import FilterNoise, Pass, Wanted, slope_of
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
@@ -195,7 +195,7 @@ def _sent(
     return sensed(library, commanded(library, flight.filter_input, given), given)
 
 
-def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothesis: Hypothesis) -> Noise:
+def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothesis: Hypothesis) -> FilterNoise:
     """The filter's noise: on each axis' speed its process noise, on effects that are noise their own, next to none elsewhere."""
     x0, p0 = start_under(compiled, flight)
     q = np.full(len(x0), NEXT_TO_NONE)
@@ -214,7 +214,7 @@ def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothes
         q[place], p0[place], forget[place] = noise.intensity, noise.sd**2, 1.0 / noise.time_s
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
     rub = np.full(max(1, len(compiled.filter.axes)), 10.0**hypothesis.rest_doubt)
-    return Noise(q, rub, p0, drive, forget, flight.step_s)
+    return FilterNoise(q, rub, p0, drive, forget, flight.step_s)
 
 
 def start_under(compiled: CompiledFilter, flight: FilteredLog) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, beginning
-from diagnosis.filter.kalman import Noise, Wanted
+from diagnosis.filter.kalman import FilterNoise, Wanted
 from diagnosis.library.effect_library import EffectLibrary
 from logcheck import thresholds
 
@@ -84,7 +84,7 @@ def _likelihood(
     q = none.copy()
     q[list(library.velocities)] = 10.0 ** (2.0 * decisions.FIRST_PROCESS_NOISE)
     rub = np.full(max(1, len(library.plain.filter.axes)), 10.0**FIRST_REST_DOUBT)
-    noise = Noise(q, rub, _padded(p0, none), none, none, float(np.median(np.diff(filter_input.t_s))))
+    noise = FilterNoise(q, rub, _padded(p0, none), none, none, float(np.median(np.diff(filter_input.t_s))))
     run = library.plain.filter.run(
         filter_input, library.plain.p, _padded(x0, none), noise, Wanted(range(filter_input.y.shape[1])), locked
     )
@@ -109,7 +109,7 @@ def _rest(library: EffectLibrary, filter_input: FilterInput, x0: Array) -> Array
     )
     compiled, none = library.plain, np.zeros(library.plain.filter.states)
     axes = compiled.filter.axes
-    low_noise = Noise(none, np.zeros(max(1, len(axes))), none, none, none, step_s)
+    low_noise = FilterNoise(none, np.zeros(max(1, len(axes))), none, none, none, step_s)
     run = compiled.filter.run(blind, compiled.p, _padded(x0, none), low_noise, Wanted([-1] * read.shape[1]), axes)
     return x0 if run is None else run.x[-1, : len(x0)]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
-from diagnosis.filter.kalman import Noise, Pass, Wanted
+from diagnosis.filter.kalman import FilterNoise, Pass, Wanted
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, filter_input_under, noise_of, start_under
 from diagnosis.library.effect_library import CompiledFilter
@@ -106,10 +106,10 @@ def _left_alone(
     return np.split(-run.w * np.sqrt(run.s), firsts[1:])
 
 
-def _sure(noise: Noise) -> Noise:
+def _sure(noise: FilterNoise) -> FilterNoise:
     """That of a plant which nothing drives, from a state that is known."""
     none = np.zeros_like(noise.q)
-    return Noise(none, np.zeros_like(noise.rub), none, none, noise.forget, 0.0)
+    return FilterNoise(none, np.zeros_like(noise.rub), none, none, noise.forget, 0.0)
 
 
 def settled_after_s(t_s: Array, second_s: float) -> float:

@@ -5,7 +5,7 @@ import pytest
 
 from diagnosis.filter.build import build_filter, equations_text, open_filter
 from diagnosis.filter.filter_input import filter_input_of
-from diagnosis.filter.kalman import Noise, Wanted
+from diagnosis.filter.kalman import FilterNoise, Wanted
 from records.log import RunLog
 from sim.columns import log_columns
 from tests.diagnosis.arm import arm
@@ -21,7 +21,9 @@ def test_the_filter_of_a_plant_alone_keeps_it_where_it_rests() -> None:
     compiled = open_filter(path, {"states": states, "outputs": 1}, axes)
     t_s = 0.01 * np.arange(100)
     log = RunLog(log_columns(plant.model), 0.01, "open", t_s, np.zeros((100, 1)), np.zeros((100, 1)))
-    noise = Noise(np.full(states, 1e-6), np.zeros(1), np.full(states, 1e-4), np.zeros(states), np.zeros(states), 0.01)
+    noise = FilterNoise(
+        np.full(states, 1e-6), np.zeros(1), np.full(states, 1e-4), np.zeros(states), np.zeros(states), 0.01
+    )
     given = filter_input_of(log, plant.plant, tuple(map(str, plant.model.outputs)), None)
     run = compiled.run(given, plant.p, np.zeros(states), noise, Wanted([0]))
     assert run is not None

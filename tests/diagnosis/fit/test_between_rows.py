@@ -9,7 +9,7 @@ import pytest
 from diagnosis.fit.between_rows import HELD, between_rows, with_commands
 from diagnosis.fit.evidence import as_fitted
 from diagnosis.hypothesis.case import Case
-from diagnosis.result import Held, Seen
+from diagnosis.result import HeldInputs, Seen
 from diagnosis.screening import detected_anew
 from records.log import RunLog
 from tests.diagnosis.arm import LONG_S, arm_case, arm_log
@@ -61,7 +61,9 @@ def test_inputs_that_seemed_to_move_beside_another_plant_are_held_again() -> Non
     case = arm_case(sparse(arm_log(seed=81, rows=EVERY)))
     moving, plain = with_commands(case, (2.0,)), nominal_fit(case)
     unseen: Any = None  # no matter what showed beside it
-    seen = Seen(moving, None, as_fitted(case, plain), unseen, (), None, unseen, held=Held(case, None, plain, 20.0))
+    seen = Seen(
+        moving, None, as_fitted(case, plain), unseen, (), None, unseen, held=HeldInputs(case, None, plain, 20.0)
+    )
     anew = detected_anew(moving, seen, None)
     assert np.array_equal(anew.case.flights[0].filter_input.u, case.flights[0].filter_input.u)
     assert anew.held is None

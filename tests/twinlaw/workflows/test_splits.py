@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from records.diagnosis import Diagnosis, Hypothesis, Unknown, load_diagnosis
+from records.diagnosis import Diagnosis, RankedHypothesis, Unknown, load_diagnosis
 from records.errors import BadInput
 from records.log import RunLog, load_log, save_log
 from sim.columns import log_columns
@@ -76,7 +76,7 @@ def short(length_s: float) -> RunLog:
 def made_up(*found: str, verdict: str = "gap", unknown: float = 0.05, twin: bool = False) -> Split:
     """A split of two logs whose diagnosis adds `found`."""
     twins = ("arm.coulomb + rotor.lag",) if twin else ()
-    likely = Hypothesis(" + ".join(found) or "arm.coulomb", "class", 0.9 - unknown, {}, twins)
+    likely = RankedHypothesis(" + ".join(found) or "arm.coulomb", "class", 0.9 - unknown, {}, twins)
     effects = (likely,) if verdict == "gap" else ()
     told = Diagnosis(verdict, 1e-9, effects=effects, unknown=Unknown(unknown), found=found)
     whole = {key: {"theta_rad": 0.1} for key in ("rms_nominal", "rms_before", "rms_after", "rms_floor")}

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from records.diagnosis import Diagnosis, Hypothesis
+from records.diagnosis import Diagnosis, RankedHypothesis
 from sim.effect import Effect
 from twinlaw.pages.diagnose.retune import Moved, moved_in_words, parameters_alone
 from twinlaw.pages.diagnose.words import class_in_words, listed, percent, sized, words
@@ -46,7 +46,7 @@ def causes_section(diagnosis: Diagnosis, effects: Mapping[str, Effect], moved: S
     )
 
 
-def _cause_rows(hypothesis: Hypothesis, found: bool, effects: Mapping[str, Effect]) -> list[tuple[str, ...]]:
+def _cause_rows(hypothesis: RankedHypothesis, found: bool, effects: Mapping[str, Effect]) -> list[tuple[str, ...]]:
     """A row for each effect, those that it is joint with below the first."""
     rows: list[tuple[str, ...]] = []
     for place, (name, class_, size) in enumerate(sized(hypothesis, effects)):

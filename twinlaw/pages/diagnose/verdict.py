@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from records.diagnosis import Diagnosis, Hypothesis
+from records.diagnosis import Diagnosis, RankedHypothesis
 from records.reasons import Note
 from records.text.uncertain import to_sd
 from records.text.units import plain_unit
@@ -69,7 +69,7 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
     return f"The rig has what the plant file lacks: {likely}{names}{sure}{gain}.{_rival(diagnosis, chosen)}"
 
 
-def _sizes(hypothesis: Hypothesis) -> dict[str, str]:
+def _sizes(hypothesis: RankedHypothesis) -> dict[str, str]:
     """The first number of each effect, which is its size, with its unit."""
     found: dict[str, str] = {}
     several = len(hypothesis.names) > 1
@@ -80,7 +80,7 @@ def _sizes(hypothesis: Hypothesis) -> dict[str, str]:
     return found
 
 
-def _rival(diagnosis: Diagnosis, chosen: Sequence[Hypothesis]) -> str:
+def _rival(diagnosis: Diagnosis, chosen: Sequence[RankedHypothesis]) -> str:
     """The next best explanation, where it is worth a thought, and the run that would tell it from what was found."""
     others = [(h.probability, words(h.effect)) for h in diagnosis.effects if h not in chosen]
     others.append((diagnosis.unknown.probability, "an effect that has no name here"))

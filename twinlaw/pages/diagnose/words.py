@@ -6,7 +6,7 @@ from functools import cache
 
 from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
-from records.diagnosis import Diagnosis, Hypothesis, names_of
+from records.diagnosis import Diagnosis, RankedHypothesis, names_of
 from records.quality import MISFIT
 from records.reasons import DOUBTS, Note
 from records.text.functional_class import Dependence, parse_class
@@ -126,7 +126,9 @@ def _signal(depends: Dependence) -> str:
     return _SIGNALS.get(name, name)
 
 
-def sized(hypothesis: Hypothesis, effects: Mapping[str, Effect], equals: str = " = ") -> list[tuple[str, str, str]]:
+def sized(
+    hypothesis: RankedHypothesis, effects: Mapping[str, Effect], equals: str = " = "
+) -> list[tuple[str, str, str]]:
     """Each effect of a hypothesis once: its name, its class, and its parameters; `effects` are the plant's library by name."""
     names, classes = hypothesis.names, names_of(hypothesis.class_)
     classes += ("",) * (len(names) - len(classes))

@@ -3,14 +3,14 @@
 import re
 from dataclasses import replace
 
-from records.diagnosis import Estimate, Hypothesis
+from records.diagnosis import Estimate, RankedHypothesis
 from sim.added_effects import library
 from tests.twinlaw.pages.diagnose.told import CE150, WORDS, text_of
 from twinlaw.pages.diagnose.summary import summary_text
 
 
 def test_joint_effects_have_a_line_each_and_their_names_once() -> None:
-    joint = Hypothesis(
+    joint = RankedHypothesis(
         "azimuth.flexible_mode + azimuth.coulomb",
         "mode(torque) on azimuth + torque(sgn phi_dot) on azimuth",
         0.9,
@@ -31,7 +31,7 @@ def test_joint_effects_have_a_line_each_and_their_names_once() -> None:
 
 
 def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
-    dead = Hypothesis(
+    dead = RankedHypothesis(
         "tail_input.deadzone",
         "dead band of u_T_V on tail_input",
         0.9,

@@ -11,9 +11,9 @@ from records.diagnosis import (
     Diagnosis,
     Estimate,
     Firmware,
-    Hypothesis,
     LiesIn,
     PlaceShare,
+    RankedHypothesis,
     Region,
     Shrinkage,
     Span,
@@ -59,14 +59,14 @@ GAP = Diagnosis(
         sentence="each angle is one sample old",
     ),
     effects=(
-        Hypothesis(
+        RankedHypothesis(
             "azimuth.cable_spring",
             "torque(phi) on azimuth",
             0.93,
             {"k": Estimate(0.00312, 0.00004, "N m/rad")},
             ("azimuth.tilt",),
         ),
-        Hypothesis("azimuth.tilt", "torque(phi) on azimuth", 0.05, {"m": Estimate(0.004, 0.001, "N m")}),
+        RankedHypothesis("azimuth.tilt", "torque(phi) on azimuth", 0.05, {"m": Estimate(0.004, 0.001, "N m")}),
     ),
     unknown=Unknown(0.02, "azimuth", "torque(phi_dot)"),
     found=("azimuth.cable_spring",),
