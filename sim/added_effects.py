@@ -9,7 +9,7 @@ from records.plant import Parameter
 from sim.bind import BoundPlant, bind
 from sim.composition.build import carried, model_with, paths_with
 from sim.composition.table import checked, effects_section, find_effect, plain_values
-from sim.effect import Effect, Values, coefficient
+from sim.effect import Effect, Values, coefficient, place_and_kind
 from sim.effects import effects_for
 from sim.model import Model
 from sim.plants import MODELS
@@ -116,7 +116,7 @@ def coefficient_index(bound: BoundPlant, effect: str, symbol: str) -> int:
 
 
 def _is_plain(nominal: Model, name: str) -> bool:
-    on_sensor = name.split(".")[0] in nominal.places.sensors
+    on_sensor = place_and_kind(name)[0] in nominal.places.sensors
     return not on_sensor and bool(carried(nominal, (name,))) and not model_with(nominal, (name,)).starts
 
 

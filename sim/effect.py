@@ -164,12 +164,12 @@ class Effect:
     @property
     def place(self) -> str:
         """Where it acts."""
-        return self.name.split(".")[0]
+        return place_and_kind(self.name)[0]
 
     @property
     def kind(self) -> str:
         """Its name without the place."""
-        return self.name.split(".")[1]
+        return place_and_kind(self.name)[1]
 
     @property
     def class_text(self) -> str:
@@ -263,6 +263,12 @@ class Effect:
     def symbols(self) -> tuple[sympy.Symbol, ...]:
         """Its parameters as they stand in the equations."""
         return tuple(symbol for spec in self.specs for symbol in spec.symbols)
+
+
+def place_and_kind(name: str) -> tuple[str, str]:
+    """Where an effect acts, and what it is called there: azimuth.tilt is a tilt of the azimuth."""
+    place, _, kind = name.partition(".")
+    return place, kind
 
 
 def coefficient(effect: str, symbol: str) -> str:

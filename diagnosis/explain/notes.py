@@ -12,7 +12,7 @@ from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import ELSEWHERE, coefficients
 from records.reasons import Note
-from sim.effect import Role
+from sim.effect import Role, place_and_kind
 
 
 def notes_of(
@@ -123,7 +123,7 @@ def _imitated(score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Ite
     imitated = [entry.effect for entry in score_tests if entry.absorbed > 1.0 - decisions.NEGLIGIBLE_SHARE**2]
     others = sorted(name for name in imitated if name not in chosen.effects)
     if others:
-        kinds = {place: [name.split(".")[1] for name in names] for place, names in _by_place(others).items()}
+        kinds = {place: [place_and_kind(name)[1] for name in names] for place, names in _by_place(others).items()}
         yield Note("imitated", "plant", {"effects": kinds})
 
 
@@ -139,7 +139,7 @@ def _unseen(case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothes
         if name not in imitated and name not in chosen.fit.hypothesis.effects
     }
     for place, names in _by_place(sorted(said, key=lambda name: (-said[name], name))).items():
-        yield Note("unseen", place, {name.split(".")[1]: _up_to(case, name, said[name]) for name in names})
+        yield Note("unseen", place, {place_and_kind(name)[1]: _up_to(case, name, said[name]) for name in names})
 
 
 def _unfollowed(case: Case) -> Iterator[Note]:
@@ -161,5 +161,5 @@ def _by_place(names: Sequence[str]) -> dict[str, list[str]]:
     """Names by their place, in the order in which each place first comes."""
     places: dict[str, list[str]] = {}
     for name in names:
-        places.setdefault(name.split(".")[0], []).append(name)
+        places.setdefault(place_and_kind(name)[0], []).append(name)
     return places

@@ -10,6 +10,7 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.search.beam import Search
 from diagnosis.search.sure_sizes import certainties
 from records.diagnosis import PlaceShare
+from sim.effect import place_and_kind
 
 
 def place_shares(
@@ -43,7 +44,7 @@ def _parts(search: Search, fitted: FittedHypothesis) -> Mapping[str, float]:
     total = sum(losses.values())
     parts: defaultdict[str, float] = defaultdict(float)
     for name, loss in losses.items():
-        parts[name.split(".")[0]] += loss / total
+        parts[place_and_kind(name)[0]] += loss / total
     return parts
 
 

@@ -19,7 +19,7 @@ from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.sensor_effects import RATE_S, rates
-from sim.effect import Role
+from sim.effect import Role, place_and_kind
 
 JITTER_SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay, scatter that is tried,
 JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
@@ -36,7 +36,7 @@ def with_jitter(case: Case, hypothesis: Hypothesis, effects: Iterable[str]) -> H
     may stand for errors of the readings that were supposed: it is looked for beside them, and without."""
     for name in effects:
         if scatters(case, name):
-            output = case.library.bound.model.places.sensors[name.split(".")[0]].output
+            output = case.library.bound.model.places.sensors[place_and_kind(name)[0]].output
             kept = {one: noise for one, noise in hypothesis.reading_noise.items() if one != output}
             bare = [replace(hypothesis, reading_noise=kept)] if output in hypothesis.reading_noise else []
             found = [_likeliest(case, start, name) for start in (hypothesis, *bare)]
@@ -100,7 +100,7 @@ def _roughness(t_s: Array, read: Array, step: float, span_s: float) -> Array:
 
 def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
     tau_s = hypothesis.effects[name][case.library.effects[name].symbol(Role.LATENESS)]
-    most_s = most_shown_s(case, case.library.bound.model.places.sensors[name.split(".")[0]].output)
+    most_s = most_shown_s(case, case.library.bound.model.places.sensors[place_and_kind(name)[0]].output)
     if most_s == 0.0:
         return _with(case, hypothesis, name, 0.0)
     coarse = _tried(

@@ -18,6 +18,7 @@ from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from sim.effect import place_and_kind
 
 Array = NDArray[np.float64]
 LEAST_TOLD = 1e-9  # share of a variance: what rounding leaves of none
@@ -138,7 +139,7 @@ def _told(case: Case, stated: Fit, explained: float, wider: Collection[int | str
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     parameters = tuple(names[int(case.free[place])] for place in far)
     told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in numbers))
-    where = [*(places_of(case, name) for name in parameters), *([entry.effect.split(".")[0]] for entry in numbers)]
+    where = [*(places_of(case, name) for name in parameters), *([place_and_kind(entry.effect)[0]] for entry in numbers)]
     distances = np.append(theta[far], away(stated.hypothesis, numbers)[len(theta) :])
     score = explained - decisions.chance_nats() * len(told)
     return Retune(FittedHypothesis((), stated, explained), told, _shares(where, distances), float(score))

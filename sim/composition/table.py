@@ -9,7 +9,7 @@ from records.pages import page
 from records.plant import Parameter, parameter_entry
 from records.text import checks
 from records.text.units import dimensions
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, place_and_kind
 from sim.effects import effects_for
 from sim.model import Model
 
@@ -36,7 +36,7 @@ def find_effect(model: Model, name: str, where: str) -> Effect:
     library = effects_for(model)
     if name in library:
         return library[name]
-    place = name.split(".")[0]
+    place = place_and_kind(name)[0]
     _check_place(place, model, where)
     near = difflib.get_close_matches(name, library, 4, 0.5) or [other for other in library if other.startswith(place)]
     raise BadInput(
@@ -48,7 +48,7 @@ def effects_section(entries: Entries) -> dict[str, Any]:
     """The section of a plant file that read_effects reads back."""
     section: dict[str, dict[str, Any]] = {}
     for name, parameters in entries.items():
-        place, kind = name.split(".")
+        place, kind = place_and_kind(name)
         section.setdefault(place, {})[kind] = {
             symbol: {"value": entry.value, "sd": entry.sd, "unit": entry.unit, "source": entry.source}
             for symbol, entry in parameters.items()

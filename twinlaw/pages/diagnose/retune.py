@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from diagnosis.result import Result
 from records.diagnosis import Diagnosis
 from records.plant import Plant
+from sim.effect import place_and_kind
 from twinlaw.pages.diagnose.words import shown
 
 MOST_MOVED = 3
@@ -52,7 +53,7 @@ def _values(plant: Plant, order: Sequence[str]) -> list[tuple[float, float]]:
 def _stated_effects(result: Result) -> Iterator[Moved]:
     """Numbers of effects that the plant file states itself."""
     for effect, values in result.case.stated.items():
-        place, _, kind = effect.partition(".")
+        place, kind = place_and_kind(effect)
         now = result.plant.effects.get(place, {}).get(kind, {})
         for symbol, stated in values.items():
             sd = result.case.stated_sd[effect][symbol]
