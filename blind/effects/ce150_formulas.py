@@ -30,7 +30,7 @@ FULL_RAD_S = 600.0  # what the library's downwash refers the main rotor's speed 
 
 
 @dataclass(frozen=True, eq=False)
-class Law:
+class OwnLaw:
     """A rig's own formula of an effect: its term (amplitude, shape, samples) -> (n,), and where a fit to that starts."""
 
     term: Term
@@ -45,7 +45,7 @@ class Sized:
     shape: Shape
     visited: Visited
     index: int
-    law: Law | None = None
+    law: OwnLaw | None = None
 
     def own(self, a: float) -> Array:
         """The rig's term at an amplitude; raises ValueError where the rig gives none."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Unpack
 
 from blind.effects import ce150_formulas as formulas
-from blind.effects.ce150_formulas import Formula, Law
+from blind.effects.ce150_formulas import Formula, OwnLaw
 from blind.effects.effect import Effect, Size
 from blind.effects.row import Traits, known, outside
 
@@ -69,7 +69,7 @@ def in_table(
     name: str,
     size: Size,
     *indices: int,
-    law: Law | None = None,
+    law: OwnLaw | None = None,
     **traits: Unpack[Traits],
 ) -> Effect:
     """A rig's row of the contract's table: `name` as there, words in braces those of the first of `indices` (none: no pair).

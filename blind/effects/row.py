@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import TypedDict, Unpack
 
-from blind.effects.ce150_formulas import Formula, Law, Sized
+from blind.effects.ce150_formulas import Formula, OwnLaw, Sized
 from blind.effects.draws import Source
 from blind.effects.effect import SCALAR, Effect, Shape, Size
 from blind.effects.equivalent import Equivalents
@@ -33,7 +33,7 @@ def known(
     size: Size,
     formula: Formula | None,
     *indices: int,
-    law: Law | None = None,
+    law: OwnLaw | None = None,
     twins: str = "",
     **traits: Unpack[Traits],
 ) -> Effect:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blind.effects.ce150_formulas import LOWER_STOP_RAD, Law, flexible_mode
+from blind.effects.ce150_formulas import LOWER_STOP_RAD, OwnLaw, flexible_mode
 from blind.effects.ce150_table import for_both, in_table
 from blind.effects.draws import Uniform
 from blind.effects.effect import Effect, Shape, Size, over
@@ -35,14 +35,14 @@ def _input_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"dead_width": Uniform(0.1, 0.35)},
             bounds=(0.01, 8.0),
-            law=Law(rounded_knees),
+            law=OwnLaw(rounded_knees),
         ),
         in_table(
             "{rotor}_input.saturation",
             Size("limit_V", LIMIT_V[i], over),
             i,
             bounds=LIMIT_BOUNDS[i],
-            law=Law(rounded_corner, lambda a, shape, target: [0.97 * a]),
+            law=OwnLaw(rounded_corner, lambda a, shape, target: [0.97 * a]),
         ),
         in_table("{rotor}_input.supply_sag", Size("sag", 0.03), i, bounds=(0.003, 8.0)),
         in_table("{rotor}_input.delay", Size("delay_s", 0.01), i, bounds=(0.1, 8.0)),
@@ -65,7 +65,7 @@ def _rotor_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"warm_time_s": Uniform(8.0, 40.0)},
             bounds=WIDE,
-            law=Law(_resistance, lambda a, shape, target: [a, shape["warm_time_s"]]),
+            law=OwnLaw(_resistance, lambda a, shape, target: [a, shape["warm_time_s"]]),
         ),
         in_table("{rotor}_rotor.dry_friction", Size("dry", 30.0), i, bounds=WIDE),
     )
@@ -96,7 +96,7 @@ def _axis_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"stribeck_rad_s": Uniform(0.03, 0.15)},
             bounds=WIDE,
-            law=Law(exponential, lambda a, shape, target: [a, shape["stribeck_rad_s"]]),
+            law=OwnLaw(exponential, lambda a, shape, target: [a, shape["stribeck_rad_s"]]),
         ),
         in_table(
             "{axis}.quadratic_drag",
@@ -104,7 +104,7 @@ def _axis_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"drag_floor_rad_s": Uniform(0.02, 0.1)},
             bounds=WIDE,
-            law=Law(laminar_below),
+            law=OwnLaw(laminar_below),
         ),
         in_table(
             "{axis}.cable_spring",
@@ -112,7 +112,7 @@ def _axis_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"spring_zero_rad": Uniform(-0.4, 0.4), "hardening": Uniform(0.0, 0.4)},
             bounds=WIDE,
-            law=Law(stiffening),
+            law=OwnLaw(stiffening),
         ),
         in_table("{axis}.rotor_acceleration", Size("spin_inertia", SPIN_KG_M2[i]), i, signed=i == 0, bounds=WIDE),
         in_table(
@@ -122,7 +122,7 @@ def _axis_rows(i: int) -> tuple[Effect, ...]:
             signed=True,
             drawn={"pulse_start_s": Uniform(6.0, 18.0), "pulse_s": Uniform(0.5, 3.0)},
             bounds=WIDE,
-            law=Law(lambda a, shape, visited: np.asarray(a * np.sqrt(np.sin(np.pi * PHASES)))),
+            law=OwnLaw(lambda a, shape, visited: np.asarray(a * np.sqrt(np.sin(np.pi * PHASES)))),
         ),
         in_table(
             "{axis}.flexible_mode",
@@ -165,7 +165,7 @@ AIR = (
         Size("ground", 0.05),
         drawn={"ground_height_rad": Uniform(0.25, 0.6)},
         bounds=WIDE,
-        law=Law(_image_rotor, lambda a, shape, target: [a, shape["ground_height_rad"]]),
+        law=OwnLaw(_image_rotor, lambda a, shape, target: [a, shape["ground_height_rad"]]),
     ),
     in_table(
         "tail_rotor.reverse_asymmetry",
@@ -178,7 +178,7 @@ AIR = (
         "tail_rotor.downwash",
         Size("downwash", 0.05),
         bounds=WIDE,
-        law=Law(lambda a, shape, visited: np.asarray(1.0 - 1.0 / (1.0 + a * (visited.omega_M / 600.0)))),
+        law=OwnLaw(lambda a, shape, visited: np.asarray(1.0 - 1.0 / (1.0 + a * (visited.omega_M / 600.0)))),
     ),
 )
 ONE_AXIS = (
@@ -201,7 +201,7 @@ ONE_AXIS = (
         Size("tail_to_elevation_m", 0.01),
         signed=True,
         bounds=WIDE,
-        law=Law(lambda a, shape, visited: a * visited.tail_thrust(visited.omega_T)),
+        law=OwnLaw(lambda a, shape, visited: a * visited.tail_thrust(visited.omega_T)),
     ),
     in_table("azimuth.tilt", Size("tilt_Nm", 2e-3), drawn={"tilt_rad": Uniform(-np.pi, np.pi)}, bounds=WIDE),
     in_table("azimuth.gyroscopic", Size("gyro_azimuth", 2e-5), bounds=(0.01, 20.0)),

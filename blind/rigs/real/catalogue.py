@@ -8,7 +8,7 @@ from functools import partial
 
 from blind.effects import ce150_formulas as formulas
 from blind.effects import row
-from blind.effects.ce150_formulas import Formula, Law
+from blind.effects.ce150_formulas import Formula, OwnLaw
 from blind.effects.draws import Fixed, OneOf, Uniform
 from blind.effects.effect import Catalogue, Effect, Size, over
 from blind.effects.equivalent import below_largest, relative
@@ -26,16 +26,16 @@ def _inputs(p: RealPlant, i: int) -> tuple[Effect, ...]:
     at, u, size = p.drives[i], p.inputs[i], p.input_V[i]
     lag = f"{p.rotors[i]}.lag" if p.rotors and not p.speeds else ""
     sag = known(
-        f"{at}.supply_sag", f"gain({u}) of {u}", Size("sag", 0.03 * 10.0 / size), formulas.supply_sag, i, law=Law(own.sagging)
+        f"{at}.supply_sag", f"gain({u}) of {u}", Size("sag", 0.03 * 10.0 / size), formulas.supply_sag, i, law=OwnLaw(own.sagging)
     )  # fmt: skip
     return (
         known(
             f"{at}.deadzone", f"dead band of {u}", Size("dead_V", 0.025 * size), formulas.dead_zone, i,
-            law=Law(own.dead_band(i)), drawn={"dead_bend": Uniform(0.05, 0.25)},
+            law=OwnLaw(own.dead_band(i)), drawn={"dead_bend": Uniform(0.05, 0.25)},
         ),
         known(
             f"{at}.saturation", f"limit of {u}", Size("limit_V", p.busy * size, over), formulas.saturation, i,
-            law=Law(own.soft_limit(i), below_largest), drawn={"limit_power": Uniform(8.0, 20.0)}, bounds=(0.6, min(8.0, p.severest)),
+            law=OwnLaw(own.soft_limit(i), below_largest), drawn={"limit_power": Uniform(8.0, 20.0)}, bounds=(0.6, min(8.0, p.severest)),
         ),
         *((sag,) if u.endswith("_V") else ()),
         known(
@@ -64,12 +64,12 @@ def _drives(p: RealPlant, i: int) -> tuple[Effect, ...]:
     at, u, size = p.rotors[i], p.inputs[i], p.input_V[i]
     warm = known(
         f"{at}.warmup", f"gain(t) of {u}", Size("warm", 0.05), formulas.warm_up, i,
-        law=Law(own.warming, own.warm_start), drawn={"warm_s": Uniform(2.0, 8.0)}, bounds=(0.01, 12.0),
+        law=OwnLaw(own.warming, own.warm_start), drawn={"warm_s": Uniform(2.0, 8.0)}, bounds=(0.01, 12.0),
     )  # fmt: skip
     if p.speeds:
         dry = known(
             f"{at}.dry_friction", f"torque(sgn omega_{'MT'[i]}) on rotor", Size("dry", 30.0), formulas.dry_rotor, i,
-            law=Law(own.rounded_dry(i)),
+            law=OwnLaw(own.rounded_dry(i)),
         )  # fmt: skip
         return warm, dry
     if p.signed:
@@ -103,20 +103,20 @@ def _axes(p: RealPlant, i: int) -> tuple[Effect, ...]:
         dry,
         known(
             f"{at}.stribeck", f"torque({angle}_dot) on {at}", Size("stribeck", 0.0125 * torque), formulas.stribeck, i,
-            law=Law(own.tustin(i), lambda a, shape, target: [a, 1.5 * shape["stribeck_rate"]]),
+            law=OwnLaw(own.tustin(i), lambda a, shape, target: [a, 1.5 * shape["stribeck_rate"]]),
             drawn={"stribeck_rate": Uniform(0.05 * rate, 0.2 * rate)},
         ),
         known(
             f"{at}.quadratic_drag", f"torque({angle}_dot) on {at}", Size("drag", 0.05 * torque / rate**2),
-            formulas.quadratic_drag, i, law=Law(own.saturating_drag(i)), drawn={"drag_rate": Uniform(4.0 * rate, 12.0 * rate)},
+            formulas.quadratic_drag, i, law=OwnLaw(own.saturating_drag(i)), drawn={"drag_rate": Uniform(4.0 * rate, 12.0 * rate)},
         ),
         known(
             f"{at}.cable_spring", f"torque({angle}) on {at}", Size("spring", 0.03 * torque / reach), formulas.cable_spring, i,
-            law=Law(own.hard_spring(i)),
+            law=OwnLaw(own.hard_spring(i)),
             drawn={"spring_hard": Uniform(0.1 / reach, 0.6 / reach), "spring_zero": Uniform(-0.3 * reach, 0.3 * reach)},
         ),
         known(
-            f"{at}.disturbance", f"torque(t) on {at}", Size("pulse", 0.1 * torque), formulas.disturbance, i, law=Law(own.blunt_push),
+            f"{at}.disturbance", f"torque(t) on {at}", Size("pulse", 0.1 * torque), formulas.disturbance, i, law=OwnLaw(own.blunt_push),
             drawn={"pulse_start_s": Uniform(3.0, 9.0), "pulse_s": Uniform(0.4, 2.5)}, signed=True,
         ),
         *((uneven,) if p.uneven else ()),
@@ -179,15 +179,15 @@ def _weights(p: RealPlant) -> tuple[Effect, ...]:
 CE150_ALONE = (
     known(
         "main_rotor.ground_effect", "thrust(psi)", Size("ground", 0.06), formulas.ground_effect,
-        law=Law(own.near_ground, lambda a, shape, target: [a, shape["ground_rad"]]), drawn={"ground_rad": Uniform(0.25, 0.6)},
+        law=OwnLaw(own.near_ground, lambda a, shape, target: [a, shape["ground_rad"]]), drawn={"ground_rad": Uniform(0.25, 0.6)},
     ),
     known(
-        "tail_rotor.downwash", "thrust(omega_M)", Size("downwash", 0.08), formulas.downwash, law=Law(own.washed),
+        "tail_rotor.downwash", "thrust(omega_M)", Size("downwash", 0.08), formulas.downwash, law=OwnLaw(own.washed),
         drawn={"downwash_bend": Uniform(0.5, 1.5)}, bounds=(0.003, 8.0),
     ),
     known(
         "elevation.tail_coupling", "torque(omega_T) on elevation", Size("tail_lift", 2e-8), formulas.tail_coupling,
-        law=Law(own.tail_lift), signed=True,
+        law=OwnLaw(own.tail_lift), signed=True,
     ),
     known(
         "azimuth.tilt", "torque(phi) on azimuth", Size("tilt", 3e-3), formulas.tilt, drawn={"tilt_rad": Uniform(-3.14, 3.14)}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blind.effects.ce150_formulas import Law, flexible_mode
+from blind.effects.ce150_formulas import OwnLaw, flexible_mode
 from blind.effects.ce150_table import for_both, in_table
 from blind.effects.draws import Fixed, OneOf, Uniform
 from blind.effects.effect import Effect, Shape, Size, over, over_root
@@ -27,7 +27,7 @@ def _input_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"dead_knee": Uniform(0.1, 0.5), "dead_skew": Uniform(-0.15, 0.15)},
             bounds=(0.01, 8.0),
-            law=Law(formulas.dead_band(i)),
+            law=OwnLaw(formulas.dead_band(i)),
         ),
         in_table(
             "{rotor}_input.saturation",
@@ -35,7 +35,7 @@ def _input_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"limit_knee": Uniform(0.03, 0.15)},
             bounds=LIMIT_BOUNDS[i],
-            law=Law(formulas.soft_limit(i), below_largest),
+            law=OwnLaw(formulas.soft_limit(i), below_largest),
         ),
         in_table(
             "{rotor}_input.supply_sag",
@@ -44,7 +44,7 @@ def _input_rows(i: int) -> tuple[Effect, ...]:
             drawn={"supply_s": Uniform(0.02, 0.15)},  # its capacitor
             single=("supply_s",),
             bounds=(0.01, 12.0),
-            law=Law(formulas.inner_resistance),
+            law=OwnLaw(formulas.inner_resistance),
         ),
         in_table("{rotor}_input.delay", Size("delay_s", 0.012), i, drawn=LATE, bounds=(0.1, 8.0)),
         in_table(
@@ -79,7 +79,7 @@ def _rotor_rows(i: int) -> tuple[Effect, ...]:
                 "warm_share": Uniform(0.2, 0.8),
             },
             bounds=WIDE,
-            law=Law(formulas.two_masses_warm, formulas.warm_start),
+            law=OwnLaw(formulas.two_masses_warm, formulas.warm_start),
         ),
         in_table(
             "{rotor}_rotor.dry_friction",
@@ -87,7 +87,7 @@ def _rotor_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"dry_round_rad_s": Uniform(1.0, 5.0)},
             bounds=WIDE,
-            law=Law(formulas.break_away(i)),
+            law=OwnLaw(formulas.break_away(i)),
         ),
     )
 
@@ -102,7 +102,7 @@ def _bearing_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"stribeck_rad_s": Uniform(0.03, 0.12)},
             bounds=(0.02, 12.0),
-            law=Law(formulas.hyperbola(i), lambda a, shape, target: [a, 1.5 * shape["stribeck_rad_s"]]),
+            law=OwnLaw(formulas.hyperbola(i), lambda a, shape, target: [a, 1.5 * shape["stribeck_rad_s"]]),
         ),
     )
 
@@ -120,7 +120,7 @@ def _axis_rows(i: int) -> tuple[Effect, ...]:
             i,
             drawn={"drag_power": OneOf(Uniform(1.75, 1.9), Uniform(2.1, 2.3))},
             bounds=AXIS_BOUNDS,
-            law=Law(formulas.other_power(i)),
+            law=OwnLaw(formulas.other_power(i)),
         ),
         in_table(
             "{axis}.cable_spring",
@@ -132,7 +132,7 @@ def _axis_rows(i: int) -> tuple[Effect, ...]:
                 "spring_zero_rad": Uniform(-0.4, 0.4),
             },
             bounds=AXIS_BOUNDS,
-            law=Law(formulas.tether(i)),
+            law=OwnLaw(formulas.tether(i)),
         ),
         in_table(
             "{axis}.rotor_acceleration",
@@ -149,7 +149,7 @@ def _axis_rows(i: int) -> tuple[Effect, ...]:
             signed=True,
             drawn={"pulse_start_s": Uniform(5.0, 16.0), "pulse_s": Uniform(0.4, 3.0), "pulse_rise": Uniform(0.1, 0.5)},
             bounds=AXIS_BOUNDS,
-            law=Law(formulas.trapezium),
+            law=OwnLaw(formulas.trapezium),
         ),
         in_table(
             "{axis}.flexible_mode",
@@ -172,7 +172,7 @@ def _sensor_rows(i: int) -> tuple[Effect, ...]:
         signed=True,
         drawn={"offset_swing": Uniform(-0.15, 0.15)},
         bounds=(0.02, 8.0),
-        law=Law(formulas.off_centre),
+        law=OwnLaw(formulas.off_centre),
     )
     return (
         *((offset,) if i == 0 else ()),
@@ -183,7 +183,7 @@ def _sensor_rows(i: int) -> tuple[Effect, ...]:
             signed=True,
             drawn={"scale_bend": Uniform(0.0, 0.2)},
             bounds=(0.02, 5.0),
-            law=Law(formulas.bent_scale(i)),
+            law=OwnLaw(formulas.bent_scale(i)),
         ),
         in_table(
             "{angle}_sensor.delay",
@@ -222,7 +222,7 @@ AIR = (
         Size("ground", 0.06),
         drawn={"ground_reach": Uniform(0.8, 2.0)},
         bounds=(0.01, 12.0),
-        law=Law(formulas.cheeseman, lambda a, shape, target: [a, 0.5 / shape["ground_reach"]]),
+        law=OwnLaw(formulas.cheeseman, lambda a, shape, target: [a, 0.5 / shape["ground_reach"]]),
     ),
     in_table(
         "tail_rotor.reverse_asymmetry",
@@ -230,14 +230,14 @@ AIR = (
         signed=True,
         drawn={"reverse_rad_s": Uniform(10.0, 40.0)},
         bounds=(0.05, 4.5),
-        law=Law(formulas.established),
+        law=OwnLaw(formulas.established),
     ),
     in_table(
         "tail_rotor.downwash",
         Size("downwash", 0.08),
         drawn={"downwash_power": Uniform(0.8, 1.6)},
         bounds=WIDE,
-        law=Law(formulas.washed_away),
+        law=OwnLaw(formulas.washed_away),
     ),
 )
 ONE_AXIS = (
@@ -247,7 +247,7 @@ ONE_AXIS = (
         signed=True,
         drawn={"centre_droop": Uniform(0.0, 0.3)},
         bounds=WIDE,
-        law=Law(formulas.droop),
+        law=OwnLaw(formulas.droop),
     ),
     in_table(
         "elevation.weight_shift",
@@ -262,21 +262,21 @@ ONE_AXIS = (
         signed=True,
         drawn={"tail_lift_power": Uniform(1.7, 2.3)},
         bounds=WIDE,
-        law=Law(formulas.tail_lift),
+        law=OwnLaw(formulas.tail_lift),
     ),
     in_table(
         "azimuth.tilt",
         Size("tilt_Nm", 3e-3),
         drawn={"tilt_rad": Uniform(-np.pi, np.pi)},
         bounds=WIDE,
-        law=Law(formulas.reach),
+        law=OwnLaw(formulas.reach),
     ),
     in_table(
         "azimuth.gyroscopic",
         Size("gyro_azimuth", 3e-5),
         drawn={"gyro_cant_rad": Uniform(-0.05, 0.05)},
         bounds=(0.01, 10.0),
-        law=Law(formulas.canted),
+        law=OwnLaw(formulas.canted),
     ),
     # Only one direction gets harder; the sign says which.
     in_table("azimuth.friction_asymmetry", Size("asymmetry_Nm", 4e-4), 1, signed=True, bounds=(0.03, 12.0)),
