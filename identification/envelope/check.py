@@ -49,9 +49,9 @@ def margins_of(mission: str) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
-    """What is tried: `open_loop` one step ahead, `model` in free runs, its accelerations by output equation in several `ways`, and starts
-    that were typed in."""
+class ToCheck:
+    """What is to be checked: `open_loop` one step ahead, `model` in free runs, its accelerations by output equation in several `ways`, and
+    starts that were typed in."""
 
     open_loop: Model
     model: Model
@@ -59,7 +59,7 @@ class Tried:
     starts: Starts
 
 
-def check(name: str, mission: str, data: Deviations, tried: Tried) -> Check:
+def check(name: str, mission: str, data: Deviations, tried: ToCheck) -> Check:
     """Try a model on flights, tuned flight by flight."""
     margins_x, margins_y = margins_of(mission)
     period_s = data.sample_period_s

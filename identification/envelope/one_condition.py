@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.envelope.check import Check, Tried, check, margins_of
+from identification.envelope.check import Check, ToCheck, check, margins_of
 from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import Flight, joined
 from identification.envelope.flights.shortcomings import poor
@@ -93,7 +93,7 @@ def interpolated(order: OrderBetween) -> dict[str, Any]:
     data, mission = joined(order.flights), order.flights[0].mission
 
     def checked(model: GlobalModel) -> Check:
-        tried = Tried(model.state, model.state, {"linear": model.output}, order.starts)
+        tried = ToCheck(model.state, model.state, {"linear": model.output}, order.starts)
         return check(order.condition.name, mission, data, tried)
 
     found: dict[str, Any] = plain(
@@ -116,7 +116,7 @@ def identify(
     training = optimise(open_loop, data, margins_x)
     ways, trained = equations(data, margins_y)
     assert isinstance(ways["linear"], Linear)
-    tried = Tried(open_loop, training.model, ways, starts)
+    tried = ToCheck(open_loop, training.model, ways, starts)
     checks = [check(f"{condition.name} identification", mission, data, tried)]
     for flight in flights:
         if flight.use == "validation":
