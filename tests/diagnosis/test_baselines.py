@@ -21,7 +21,7 @@ from twinlaw.command import main
 @pytest.fixture(scope="module")
 def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("cases")
-    blind.make(11, folder, 1, ("single",))
+    blind.make(blind.Benchmark(11, 1, ("single",)), folder)
     return folder
 
 
