@@ -29,7 +29,7 @@ from controllers.linearisation import (
 )
 from controllers.placing import Placed, placed
 from design.operating_points import design_point
-from design.pole_placement import poles_z
+from design.pole_placement import INTEGRAL, poles_z
 from design.schedule import CONSTANT_Q3_BELOW_S
 from design.table import observer
 from records.errors import BadInput
@@ -111,7 +111,7 @@ EQUATIONS = Instantaneous(3)
 def design(points: Points) -> LawTable[InstantaneousGains]:
     """The plant's parameters as the board needs them; raises BadInput where eq (26) cannot be used, or for other equations than (4)-(9)."""
     for axis in AXES:
-        if points.settings.axis(axis).free_degree != "integral":
+        if points.settings.axis(axis).free_degree != INTEGRAL:
             raise BadInput(
                 "free_degree", f"plant {points.bound.plant.name!r}: design.{axis}", repr(points.settings.axis(axis).free_degree),
                 "'integral', which (C.21) has", "choose that, or the scheduled controller",

@@ -13,6 +13,7 @@ from design.loop import PlantPolynomials, plant_polynomials
 from design.obstacles import advice
 from design.pole_placement import (
     FREE_DEGREES,
+    INTEGRAL,
     Placement,
     characteristic,
     demand_usable,
@@ -149,7 +150,7 @@ def placed(
     try:
         demand_usable(placement, where)
     except BadInput as refusal:
-        raise replace(refusal, remedy=advice(plant, integrates=wishes.free_degree == "integral")) from None
+        raise replace(refusal, remedy=advice(plant, integrates=wishes.free_degree == INTEGRAL)) from None
     return PointDesign(plant, transfer, placement, exact_delta(exact or plant, placement, wishes))
 
 
@@ -157,7 +158,7 @@ def exact_delta(plant: PlantPolynomials, placement: Placement, wishes: AxisSetti
     """The delta form to rounding, in which the coefficient that the free degree makes zero is zero to the last bit."""
     free_degree = wishes.free_degree
     delta = refined(plant, to_delta(placement.controller), wishes.placed_rad_s, FREE_DEGREES[free_degree])
-    if free_degree == "integral":
+    if free_degree == INTEGRAL:
         return DeltaForm(delta.q, np.append(0.0, delta.p[1:]))
     if free_degree == "q3_zero":
         return DeltaForm(np.append(delta.q[:-1], 0.0), delta.p)

@@ -65,8 +65,9 @@ def _zeros(count: int) -> list[float]:
     return [0.0] * count
 
 
+INTEGRAL = "integral"
 FREE_DEGREES: Mapping[str, FreeDegree] = {
-    "integral": FreeDegree(_ones, _zeros, -1.0, "P(1) = 0: the controller integrates"),
+    INTEGRAL: FreeDegree(_ones, _zeros, -1.0, "P(1) = 0: the controller integrates"),
     "q3_zero": FreeDegree(
         _zeros, lambda n: [*_zeros(n - 1), 1.0], 0.0, "q_3 = 0, the last q: lowest gain without an integrator"
     ),

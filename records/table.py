@@ -80,6 +80,11 @@ class AxisLaw:
         """n, the states that the law was made for."""
         return len(self.q_V_rad) - 1
 
+    @property
+    def integrates(self) -> bool:
+        """P(1) is 0 wherever the schedule stands: no error stays at rest."""
+        return not any(self.p[0])
+
 
 @dataclass(frozen=True)
 class Schedule:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from design.pins import demand_in_reach
-from design.pole_placement import FREE_DEGREES
+from design.pole_placement import FREE_DEGREES, INTEGRAL
 from design.settings.entries import count, entry
 from design.settings.poles import read_poles, read_roll_off
 from design.settings.ranges import AZIMUTH_SHARE, SHARE, check_range, range_end, within
@@ -24,7 +24,7 @@ from sim.manoeuvres import LEAST_HOP
 PLAIN_AXIS: Mapping[str, Any] = {
     "roll_off_pole_rad_s": 0.0,
     "coefficient_degree": None,
-    "free_degree": "integral",
+    "free_degree": INTEGRAL,
     "prefilter_time_constant_s": 0.0,
     "observer_pole": 0.9,
 }

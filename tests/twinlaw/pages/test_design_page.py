@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from records.loops import LOOPS
+from records.loops import LOOPS, Loop
 from twinlaw.pages.run.design_page import coefficient_plot
 
 POINTS = np.linspace(-0.5, 0.5, 3)
@@ -35,3 +35,14 @@ def test_a_loop_of_fewer_states_leaves_the_others_coefficients_whole(states: tup
     assert drawn.count(">q_3 [") == 1
     assert drawn.count(">q_2 [") == drawn.count(">u_ff [") == 2
     assert drawn.count(" [V/deg]</text>") + drawn.count(" [V/rad]</text>") == 7
+
+
+def test_an_axis_called_as_its_angle_is_written_once_along_the_schedule() -> None:
+    # Truth: of axis and output "nod", "nod_rad", the abscissa is nod [deg]; of the helicopter's it is elevation psi [deg].
+    nod = Loop("nod", "nod_rad", "u_V", "motor")
+    for loop, label in ((nod, ">nod [deg]"), (LOOPS[0], ">elevation psi [deg]")):
+        report: Any = SimpleNamespace(
+            axes=[_axis(loop.axis, 2)], points_rad=POINTS, angle=loop.axis, loop=lambda _, one=loop: one,
+            scheduled_by=loop.output,
+        )  # fmt: skip
+        assert label in coefficient_plot(cast(Any, report))

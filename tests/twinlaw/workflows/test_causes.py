@@ -10,13 +10,14 @@ import pytest
 from records.errors import BadInput
 from sim.activity import Activity
 from sim.tracking import Tracking
-from tests.own_plants import SUSPENSION
+from tests.own_plants import NO_AXIS, SUSPENSION
 from tests.twinlaw.workflows.test_flying import DESIGN
+from twinlaw.pages.run.design_page import design_sections
 from twinlaw.pages.run.flight import ChainFlight
 from twinlaw.workflows.chain import causes
 from twinlaw.workflows.chain.causes import cause
 from twinlaw.workflows.chain.designing import design_controller
-from twinlaw.workflows.chain.flying import fly_host
+from twinlaw.workflows.chain.flying import fly_double, fly_host
 
 
 def _flown(steady_m: float) -> tuple[Tracking, ...]:
@@ -83,3 +84,30 @@ def test_a_quarter_of_a_car_loses_its_last_digits_in_float32(tmp_path: Path) -> 
     flown = fly_host(designed.bound, designed.table, "float32").tracking
     found = cause(designed.bound, designed.table, "float32", flown)
     assert re.search(r"the same law is green, off by 0 m .*lost in float32's last digits\. .*--arithmetic fixed", found)
+
+
+NO_INTEGRAL = """
+[design]
+sample_period_s = 0.0005
+
+[design.current]
+poles_rad_s = [-150.0, -200.0]
+free_degree = "q0_zero"
+reference_min_A = -4.0
+reference_max_A = 4.0
+"""
+
+
+def test_an_error_that_a_law_without_integral_action_leaves_is_told_with_the_key_that_ends_it(tmp_path: Path) -> None:
+    # Truth: q_0 = 0 leaves P(1) > 0, so the gain at rest is finite, and the one feed-forward of an unscheduled table is that of 0 A.
+    plant = NO_AXIS.write(tmp_path, "coil")
+    plant.write_text(plant.read_text() + NO_INTEGRAL)
+    designed = design_controller(plant)
+    flown = fly_double(designed.bound, designed.table).tracking
+    found = cause(designed.bound, designed.table, "float32", flown)
+    assert found.endswith('what the feed-forward misses stays: give free_degree = "integral" in [design.current].')
+    assert "Choose other poles" not in found
+    (text,) = [
+        text for part in design_sections(designed.report) if part.title == "Coefficients" for text in part.sentences
+    ]
+    assert "does not integrate" in text

@@ -65,8 +65,8 @@ def _design_row(report: DesignReport, axis: AxisReport) -> Row:
         _where(report, axis.after_rounding.at_psi_rad),
         f"{worst.sensitivity:.2f}",
         degrees(worst.phase_rad),
-        f"{worst.gain_up:.2f} / {worst.gain_down:.2f}",
-        f"{1e3 * worst.delay_s:.0f} ms",
+        f"{_or_any(worst.gain_up, 2)} / {worst.gain_down:.2f}",
+        _or_any(1e3 * worst.delay_s, 0, " ms"),
         f"{100 * axis.fit_error.q:.2g} %",
     )
 
@@ -94,7 +94,12 @@ def _slowest(pole: SlowestPole, column: str | None) -> dict[str, float]:
 
 def degrees(angle_rad: float) -> str:
     """An angle as a person reads it."""
-    return f"{math.degrees(angle_rad):.1f} deg" if math.isfinite(angle_rad) else "any"
+    return _or_any(math.degrees(angle_rad), 1, " deg")
+
+
+def _or_any(margin: float, places: int, unit: str = "") -> str:
+    """A margin as a person reads it; one without end forgives any change."""
+    return f"{margin:.{places}f}{unit}" if math.isfinite(margin) else "any"
 
 
 def _finite(values: dict[str, float]) -> dict[str, float | None]:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
+from design.pole_placement import INTEGRAL
 from design.report import AxisReport, DesignReport
 from records.loops import Loop
 from records.quality import Colour, Quality, flag
@@ -103,7 +104,8 @@ def _margins(report: DesignReport) -> Section:
 
 def _schedule_label(report: DesignReport) -> str:
     loop = report.loop(report.angle)
-    return f"{report.angle} {loop.symbol} [{shown(loop.output)[0]}]"
+    named = " ".join(dict.fromkeys((report.angle, loop.symbol)))  # an axis is often called as its angle is
+    return f"{named} [{shown(loop.output)[0]}]"
 
 
 def _coefficients(report: DesignReport) -> Section:
@@ -114,8 +116,8 @@ def _coefficients(report: DesignReport) -> Section:
         f"Coefficients over {scheduled_over(report)}",
         (
             f"The law's coefficients in powers of delta = 1 - z^-1, and the input of the operating point: dots as designed at each of "
-            f"{len(report.points_rad)} operating points, lines as fitted by one polynomial each. p_0 = P(1) is 0 everywhere, as the law "
-            f"integrates. The fit of u_ff is off by at most {' and '.join(worst)}.",
+            f"{len(report.points_rad)} operating points, lines as fitted by one polynomial each. {_at_rest(report)} The fit of u_ff is "
+            f"off by at most {' and '.join(worst)}.",
         ),
         (),
         (coefficient_plot(report),),
@@ -133,10 +135,20 @@ def _constants(report: DesignReport) -> Section:
         "Coefficients",
         (
             "The law's coefficients in powers of delta = 1 - z^-1, and the input of the rest point; constants, as the law goes by no "
-            "schedule. p_0 = P(1) is 0, as the law integrates.",
+            f"schedule. {_at_rest(report)}",
         ),
         (Table(rows, ("loop", "coefficient", "unit", "value")),),
     )
+
+
+def _at_rest(report: DesignReport) -> str:
+    """What p_0 = P(1) says of an error at rest: of a loop that integrates none stays."""
+    stays = [axis.axis for axis in report.axes if axis.free_degree != INTEGRAL]
+    integrates = [axis.axis for axis in report.axes if axis.axis not in stays]
+    if not stays:
+        return "p_0 = P(1) is 0 everywhere, as the law integrates."
+    whose = f" of {' and '.join(stays)}" if integrates else ""
+    return f"p_0 = P(1){whose} is not 0: the law does not integrate there, and what its feed-forward misses stays as an error at rest."
 
 
 def _small(loop: Loop, value: float) -> str:

@@ -72,7 +72,7 @@ def out_of_reach(tracking: Iterable[Tracking]) -> list[str]:
 def _beyond(entry: Tracking) -> str:
     if entry.is_out_of_reach and any(look.colour is not Colour.GREEN for look in tracking_looks(entry)):
         return beyond_reach(entry.output, entry.input, entry.limit_V, LONG.format(entry.at_limit_s))
-    if entry.rest_limit_V is not None and entry.holds and _steady(entry).colour is not Colour.GREEN:
+    if entry.rest_limit_V is not None and rests_off(entry):
         return beyond_reach(entry.output, entry.input, entry.rest_limit_V, MOSTLY)
     return ""
 
@@ -97,6 +97,11 @@ def error_told(entry: Tracking, value: float, digits: int = 2) -> str:
     if entry.is_angle:
         return f"{math.degrees(value):.{digits}f} deg"
     return f"{value if value > _ROUNDING * entry.step_rad else 0.0:.3g} {unit_of(entry.output)}".rstrip()
+
+
+def rests_off(entry: Tracking) -> bool:
+    """Whether an output rests further from its reference than a good flight's."""
+    return bool(entry.holds) and _steady(entry).colour is not Colour.GREEN
 
 
 def _steady(entry: Tracking) -> Look:

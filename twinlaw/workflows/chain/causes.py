@@ -5,16 +5,16 @@ from collections.abc import Sequence
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.quality import RANK, Colour
+from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.tracking import Tracking
-from twinlaw.pages.run.tracking import error_told, flight_quality, out_of_reach
+from twinlaw.pages.run.tracking import error_told, flight_quality, out_of_reach, rests_off
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.flying import fly_double, fly_host
 
 LOST = "what the input moves by in a sample is lost in {arithmetic}'s last digits. Choose faster poles or a longer sample_period_s"
-AS_ITSELF = (
-    "it is the law, not its arithmetic. Choose other poles, another prefilter_time_constant_s or other references"
-)
+ITSELF = "it is the law, not its arithmetic. "
+OTHERWISE = "Choose other poles, another prefilter_time_constant_s or other references"
 
 
 def cause(bound: BoundPlant, table: FlownTable, arithmetic: str, flown: Sequence[Tracking]) -> str:
@@ -25,10 +25,27 @@ def cause(bound: BoundPlant, table: FlownTable, arithmetic: str, flown: Sequence
     exact = fly_double(bound, table).tracking
     ends = f"At rest it is off by {_off(flown)}; in double precision the same law is {_colour(exact)}, off by {_off(exact)}"
     if RANK[_colour(exact)] >= RANK[colour]:
-        return "\n".join(out_of_reach(flown)) or f"{ends}: {AS_ITSELF}."
+        return "\n".join(out_of_reach(flown)) or f"{ends}: {ITSELF}{_stays(table, exact) or OTHERWISE}."
     better = [name for name in ARITHMETICS if name != arithmetic and _is_better(bound, table, name, colour)]
     also = f", or --arithmetic {better[0]}, in which it flies better" if better else ""
     return f"{ends}: {LOST.format(arithmetic=arithmetic)}{also}."
+
+
+def _stays(table: FlownTable, exact: Sequence[Tracking]) -> str:
+    """What to do about an error at rest that a loop without integral action leaves; "" where none does."""
+    if not isinstance(table, ControllerTable):
+        return ""
+    off = {entry.output for entry in exact if rests_off(entry)}
+    loops = [
+        loop.axis
+        for loop, law in zip(table.loops, table.axes, strict=True)
+        if loop.output in off and not law.integrates
+    ]
+    sections = " and ".join(f"[design.{name}]" for name in loops)
+    return (
+        sections
+        and f'Without integral action what the feed-forward misses stays: give free_degree = "integral" in {sections}'
+    )
 
 
 def _colour(flown: Sequence[Tracking]) -> Colour:
