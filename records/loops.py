@@ -205,16 +205,17 @@ def demand_distinct(loops: Sequence[Loop], where: str) -> None:
 
 
 def _demand_own_symbols(loops: Sequence[Loop], where: str) -> None:
-    """Names in C are made of the columns without their units: theta of theta_rad."""
-    columns = [pair for loop in loops for pair in ((loop.symbol, loop.output), (loop.voltage, loop.input))]
-    for symbol, column in columns:
-        same = next((other for known, other in columns if known == symbol and other != column), None)
-        if same is not None:
-            expected = "columns that differ without their units, as names in C are made of these"
-            remedy = f"rename one in the equations: u_{column}, say"
-            raise BadInput(
-                "loops", where, f"{column} and {same}, both {symbol!r} without their units", expected, remedy
-            )
+    """Names in C are made of the columns without their units, in macros in capitals: theta of theta_rad, THETA and THETA_REF."""
+    known: dict[str, str] = {}
+    for loop in loops:
+        columns = {loop.output: loop.symbol, loop.reference: f"{loop.symbol}_ref", loop.input: loop.voltage}
+        for column, symbol in columns.items():
+            other, known[symbol.upper()] = known.get(symbol.upper()), column
+            if other is not None:
+                expected = "columns that differ in capitals without their units, as names in C are made of these"
+                remedy = f"rename one in the equations: u_{column}, say"
+                got = f"{column} and {other}, both {symbol.upper()!r} in capitals without their units"
+                raise BadInput("loops", where, got, expected, remedy)
 
 
 def _demand_own_members(loops: Sequence[Loop], where: str) -> None:

@@ -20,9 +20,30 @@ def test_a_name_that_is_a_keyword_of_c_is_refused(part: str, name: str, word: st
 def test_columns_that_differ_by_their_units_alone_are_named() -> None:
     entry = {"axis": "pan", "output": "pan_rad", "input": "pan_A", "motor": "pan"}
     with pytest.raises(
-        BadInput, match=r"got pan_rad and pan_A, both 'pan' without their units.*rename one in the equations: u_pan_"
+        BadInput,
+        match=r"got pan_A and pan_rad, both 'PAN' in capitals without their units.*rename one in the equations: u_pan_",
     ):
         parse_loops([entry], "design")
+
+
+@pytest.mark.parametrize(
+    ("second", "told"),
+    [
+        ({"output": "Nod_rad"}, r"Nod_rad and nod_rad, both 'NOD'"),
+        ({"input": "U_A"}, r"U_A and u_V, both 'U'"),
+        ({"output": "nod_ref_rad"}, r"nod_ref_rad and nod_ref_rad, both 'NOD_REF'"),
+        ({"input": "nod_ref_V"}, r"nod_ref_V and nod_ref_rad, both 'NOD_REF'"),
+    ],
+)
+def test_columns_of_two_loops_that_would_be_one_macro_or_member_are_refused(second: dict[str, str], told: str) -> None:
+    # Truth: law.h has LAW_NOD_REF_MIN_RAD and LAW_U_MIN_V of nod_rad and u_V, and a member nod_ref_rad; zig refuses a second of them.
+    loops = [
+        {"axis": "nod", "output": "nod_rad", "input": "u_V", "motor": "nod"},
+        {"axis": "turn", "output": "turn_rad", "input": "v_V", "motor": "turn"},
+    ]
+    assert len(parse_loops(loops, "design")) == len(loops)
+    with pytest.raises(BadInput, match=told):
+        parse_loops([loops[0], {**loops[1], **second}], "design")
 
 
 @pytest.mark.parametrize(
