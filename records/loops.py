@@ -27,7 +27,6 @@ _C_WORDS = frozenset(
     long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast
     restrict return short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try
     typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq
-    NULL
     """.split()  # noqa: SIM905
 )
 _OF_THE_LAW = ("axis",)  # whose limits would be called as the type of all limits
@@ -242,6 +241,10 @@ def parse_loop(entry: Any, where: str) -> Loop:
     if loop.axis in (*TABLE_KEYS, *_OF_THE_LAW):
         got = f"{loop.axis!r}, which the table or its C has for something else"
         raise BadInput("name", f"{where}.axis", got, "a name of its own", "choose another name")
+    for name in ("axis", "motor"):
+        if named[name].isupper():
+            got = f"{named[name]!r}, in capitals as the macros of C headers are"
+            raise BadInput("name", f"{where}.{name}", got, "a small letter in it", f"write {named[name].lower()}, say")
     for name, value in (("axis", loop.axis), ("motor", loop.motor), ("output", loop.symbol), ("input", loop.voltage)):
         if value in _C_WORDS:
             got = f"{named[name]!r}, in C {value!r}, a word of that language or of C++"

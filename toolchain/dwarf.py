@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from records.errors import BadInput
-from toolchain.elf import image_symbols, open_elf
+from toolchain.elf import image_variables, open_elf
 
 _KINDS = {2: "bool", 4: "float", 5: "int", 6: "int", 7: "uint", 8: "uint"}  # DW_ATE_..., 6 and 8 are characters
 _THROUGH = ("DW_TAG_typedef", "DW_TAG_const_type", "DW_TAG_volatile_type")
@@ -27,7 +27,7 @@ def variable_members(elf: bytes, where: str, symbol: str) -> tuple[Member, ...]:
 
     Raises BadInput for an image without the symbol, or without debug information of it.
     """
-    symbols = image_symbols(elf, where)
+    symbols = image_variables(elf, where)
     if symbol not in symbols:
         raise _unknown(where, f"no symbol {symbol}")
     address = symbols[symbol].address

@@ -2,6 +2,7 @@
 
 import io
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from elftools.common.exceptions import ELFError
@@ -92,14 +93,22 @@ def image_sizes(elf: bytes, where: str) -> ImageSizes:
 
 def image_symbols(elf: bytes, where: str) -> dict[str, Symbol]:
     """All named symbols; a function's address is given without the Thumb bit. Raises BadInput where there are none."""
+    return {name: symbol for name, kind, symbol in _symbols(elf, where) if kind not in ("STT_FILE", "STT_SECTION")}
+
+
+def image_variables(elf: bytes, where: str) -> dict[str, Symbol]:
+    """Those of `image_symbols` that are variables: a static one may be called as a function of another file is."""
+    return {name: symbol for name, kind, symbol in _symbols(elf, where) if kind == "STT_OBJECT"}
+
+
+def _symbols(elf: bytes, where: str) -> Iterator[tuple[str, str, Symbol]]:
     table = open_elf(elf, where).get_section_by_name(".symtab")
     if not isinstance(table, SymbolTableSection):
         raise _foreign(where, "an ELF file without symbols")
-    return {
-        symbol.name: Symbol(_address(symbol["st_value"], symbol["st_info"]["type"]), int(symbol["st_size"]))
-        for symbol in table.iter_symbols()
-        if symbol.name and symbol["st_info"]["type"] not in ("STT_FILE", "STT_SECTION")
-    }
+    for symbol in table.iter_symbols():
+        kind = symbol["st_info"]["type"]
+        if symbol.name:
+            yield symbol.name, kind, Symbol(_address(symbol["st_value"], kind), int(symbol["st_size"]))
 
 
 def _address(value: int, kind: str) -> int:

@@ -2,15 +2,18 @@
 
 import re
 import struct
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 from codegen.law import generate_law
+from records.loops import Loop
 from records.table import ControllerTable, table_text
 from rig.emulator.board import EmulatedBoard
 from rig.programming.image import build_firmware
+from tests.codegen.test_any_loops import any_table
 from tests.law_tables import ce150_table
 from toolchain.dwarf import variable_members
 from toolchain.elf import image_symbols
@@ -120,6 +123,17 @@ def test_coefficients_are_told_as_the_words_of_the_c_have_them() -> None:
     assert float(told["elevation_q_2_V_rad[1]"]) == pytest.approx(
         ce150_table().axes[0].q_V_rad[2][1], abs=2.0 ** -int(places)
     )
+
+
+def test_a_loop_called_as_words_of_the_firmware_gets_its_image_and_description() -> None:
+    """Truth: path_limits is a function of firmware/control/path.h, and one loop's limits are part of the code; EACH is a word in
+    capitals that macros like. None of these is the loop's own, so nothing is missing."""
+    loops = (Loop("path", "EACH_rad", "u_V", "path"),)
+    table = replace(any_table((2,), None), loops=loops)
+    law = generate_law(table, "float32")
+    elf = build_firmware(law, loops=loops).elf
+    assert "path_limits" in image_symbols(elf, "image")
+    assert "law.path.v_V" in image_a2l(table, "float32", elf)
 
 
 def test_members_lie_within_their_variable() -> None:

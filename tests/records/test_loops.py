@@ -51,7 +51,8 @@ def test_columns_of_two_loops_that_would_be_one_macro_or_member_are_refused(seco
     [
         ("axis", r"\[0\]\.axis: name: got 'axis', which the table or its C has for something else"),
         ("digest", r"got 'digest', which the table or its C has"),
-        ("NULL", r"got 'NULL', in C 'NULL'"),
+        ("NULL", r"got 'NULL', in capitals as the macros of C headers are.*write null, say"),
+        ("TIM1", r"got 'TIM1', in capitals"),
         ("theta_rad", r"a loop called 'theta_rad', as a column is.*call it theta, say"),
         ("theta_ref_rad", r"a loop called 'theta_ref_rad', as a column is"),
     ],

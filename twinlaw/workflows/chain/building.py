@@ -16,7 +16,7 @@ from records.protocol import protocol_of
 from records.table import ControllerTable
 from rig.programming.image import FirmwareImage, build_firmware
 from toolchain.dwarf import variable_members
-from toolchain.elf import image_board, image_symbols
+from toolchain.elf import image_board, image_variables
 from twinlaw.cli.console import stage
 
 _WHERE = "firmware.elf"
@@ -59,7 +59,7 @@ def build_image(table: FlownTable, law: Mapping[str, str], folder: Path, board: 
 
 def image_a2l(table: ControllerTable, arithmetic: str, elf: bytes) -> str:
     """The .a2l text of an image built from `table`; raises BadInput for one without debug information."""
-    symbols = image_symbols(elf, _WHERE)
+    symbols = image_variables(elf, _WHERE)
     limits = [
         member
         for name in (f"{loop.axis}_limits" for loop in table.loops)
