@@ -1,7 +1,8 @@
 /* Of the Arduino core what the example calls. */
 #include <stdint.h>
 #include <stdlib.h>
-struct Port { void begin(long) {} void println(const char *) {} };
-static Port Serial;
+#define OUTPUT 1
 static uint32_t micros() { static uint32_t t_us; return t_us += 1000u; }
 static void analogWrite(int, int) {}
+static void digitalWrite(int, int) {}
+static void pinMode(int, int) {}
