@@ -80,6 +80,15 @@ def test_through_a_stop_whose_place_is_a_parameter(mechanism):
     check(bound, t, u, np.array([0.0, 0.2]), ("mass", "friction", "limit", "x0.s_m", "gain.u_N"))
 
 
+def test_an_axis_that_stands_a_rounding_before_its_stop_has_finite_slopes(mechanism):
+    """Truth: pressed against its stop it stays there, wherever within a rounding of it it began; only the stop's own place shows."""
+    bound = mechanism(values=(2.0, 0.5, 0.4))
+    t, u = np.arange(101) * 0.01, np.full((101, 1), 1.5)
+    for speed_m_s in (1.5e-317, 1e-200, 1e-20):
+        found = slopes(bound, t, u, np.array([np.nextafter(0.4, 0.0), speed_m_s]), ("x0.s_m", "x0.v_m_s", "limit"))
+        np.testing.assert_allclose(found.dy[2:, 0], np.tile([0.0, 0.0, 1.0], (99, 1)), atol=1e-9)
+
+
 def test_more_columns_than_there_is_room_for_or_unknown_ones_are_refused(bound):
     t, u, x0 = np.arange(3) * 0.01, np.zeros((3, 2)), np.zeros(6)
     with pytest.raises(BadInput, match="column: got 'K_X'"):

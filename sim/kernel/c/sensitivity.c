@@ -128,7 +128,18 @@ static double stop_slope(const context *at, int axis, int event, int column)
     return which < N_PARAMETERS ? slopes[axis * N_PARAMETERS + which] : 0.0;
 }
 
-static void jump(const context *at, const plant_body *before, const plant_body *after, double t_s, event_piece piece, matrix *S)
+/* An axis that in a whole step moves by less than this share of what its place and its acceleration come to does not hit its stop but is
+ * there: a time of arrival that turns on such a speed is none, and its slope would be the reciprocal of rounding. */
+#define GRAZE 1e-12
+
+/* Whether a stop is hit at a speed that tells when. */
+static bool is_hit(const plant_body *before, const double *rates, int axis, double h_s)
+{
+    const double speed = before->x[AXIS_VELOCITY[axis]], gained = rates[AXIS_VELOCITY[axis]] * h_s;
+    return fabs(speed) > GRAZE * (fabs(before->x[AXIS_POSITION[axis]]) / h_s + fabs(gained) + GRAZE);
+}
+
+static void jump(const context *at, const plant_body *before, const plant_body *after, double t_s, double h_s, event_piece piece, matrix *S)
 {
     double old[N_STATES], new[N_STATES], torque[AXES], up[AXES], down[AXES];
     model_rates(t_s, before->x, at->u, at->c, before->sign, before->move, old, torque, up, down);
@@ -136,10 +147,11 @@ static void jump(const context *at, const plant_body *before, const plant_body *
     const int position = AXIS_POSITION[piece.axis], velocity = AXIS_VELOCITY[piece.axis];
     const bool stop = piece.event != EVENT_REST;
     const double speed = stop ? before->x[velocity] : old[velocity];
+    const bool is_told = stop ? is_hit(before, old, piece.axis, h_s) : speed != 0.0;
     for (int column = 0; column < at->request->columns; column++) {
         const double limit = stop ? stop_slope(at, piece.axis, piece.event, column) : 0.0;
         const double distance = stop ? S->row[position][column] - limit : S->row[velocity][column];
-        const double later = speed != 0.0 ? -distance / speed : 0.0;
+        const double later = is_told ? -distance / speed : 0.0;
         for (int i = 0; i < N_STATES; i++)
             S->row[i][column] += (old[i] - new[i]) * later;
         if (stop)
@@ -187,7 +199,7 @@ static void advance_with(const context *at, plant_body *body, double t_s, double
         const double then_s = pieces[n].t_s + pieces[n].h_s;
         events_apply(body->x, body->sign, body->move, then_s, at->u, at->c, pieces[n]);
         if (pieces[n].event < EVENT_BREAK_UP)
-            jump(at, &before, body, then_s, pieces[n], S);
+            jump(at, &before, body, then_s, h_s, pieces[n], S);
         else if (pieces[n].event > EVENT_BREAK_DOWN)
             jump_kink(at, &before, body, then_s, pieces[n], S);
     }
