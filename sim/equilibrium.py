@@ -107,6 +107,17 @@ def _rest_with(
     return _within_stops(bound, arms, _measured(bound, wanted, driven))
 
 
+def rest_under(bound: BoundPlant, u: Array) -> OperatingPoint:
+    """Where a plant that has no position comes to rest under constant inputs u (inputs,); raises NoRestPoint where it drifts on."""
+    usual = {place.output: place.size for place in bound.model.places.sensors.values()}
+    sizes = {index: usual.get(name, 0.0) for index, name in enumerate(bound.model.outputs)}
+    found = next(filter(None, (_solve_measured(bound, {}, x, u, ()) for x in _filled(bound, sizes))), None)
+    if found is None:
+        where, remedy = f"plant {bound.plant.name!r} under constant inputs", "check the parameters, or close a loop"
+        raise NoRestPoint("equilibrium", where, "no solution of f(x, u) = 0", "a rest point", remedy)
+    return OperatingPoint(0.0, *found)
+
+
 def _all_inputs(bound: BoundPlant) -> range:
     return range(len(bound.model.inputs))
 
@@ -181,7 +192,7 @@ def _solve_measured(
         return np.concatenate([equations.rates(*here), equations.outputs(*here)[places] - values]), slopes
 
     found = _newton(np.concatenate([x, u[own]]), at, _least_step)
-    if found is None or not np.max(np.abs(found[1])) <= RATE_TOLERANCE * max(1.0, np.max(np.abs(values))):
+    if found is None or not np.max(np.abs(found[1])) <= RATE_TOLERANCE * np.max(np.abs(values), initial=1.0):
         return None
     return found[0][:states], _with(u, own, found[0][states:])
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.table import Table
 from sim.bind import BoundPlant
-from sim.equilibrium import OperatingPoint, equilibrium, rest_with
+from sim.equilibrium import OperatingPoint, equilibrium, rest_under, rest_with
 from sim.kernel.reference import reference
 from sim.wiring import wiring
 
@@ -172,6 +173,7 @@ def at_rest(bound: BoundPlant) -> Array:
 
 # What stirs a plant without a loop: each input changes at once between levels about its rest, as shares of what it may command, so that
 # slow and fast parts answer. It is long enough for a rig's slowest axis to settle once, and each input begins later than the one before.
+# All times are in the plant's own seconds (Model.second_s).
 STIR_S = 20.0
 STIR_AT_S = (1.0, 3.0, 5.0, 6.0, 7.0, 8.5, 9.5, 10.0, 10.5, 11.25, 12.0, 12.5, 13.0, 13.25, 13.5, 14.0, 15.0, 17.0)
 STIR_LEVEL = (0.2, -0.2, 0.1, -0.1, 0.2, 0.0, -0.2, 0.2, -0.1, 0.2, -0.2, 0.1, -0.2, 0.2, 0.0, -0.1, 0.1, 0.0)
@@ -190,21 +192,26 @@ class Stir:
 
 def stir(bound: BoundPlant, sample_period_s: float = 0.01) -> Stir:
     """Steps of every input about where the plant rests, or, where nothing drives it, a start away from there."""
-    t_s = np.asarray(np.arange(round(STIR_S / sample_period_s) + 1) * sample_period_s, dtype=float)
+    own_s = np.asarray(np.arange(round(STIR_S / sample_period_s) + 1) * sample_period_s, dtype=float)
     x0, u0 = _rest(bound)
-    u = np.tile(u0, (t_s.size, 1))
+    u = np.tile(u0, (own_s.size, 1))
     for column, variable in enumerate(bound.model.inputs):
         low, high = bound.commands(variable)
-        after = np.searchsorted(np.array(STIR_AT_S) + column * STIR_LATER_S, t_s, side="right")
+        after = np.searchsorted(np.array(STIR_AT_S) + column * STIR_LATER_S, own_s, side="right")
         level = np.concatenate([[0.0], STIR_LEVEL])[after]
         u[:, column] = np.clip(u0[column] + level * (high - low) / 2.0, low, high)
-    return Stir(t_s, u, x0 if bound.model.inputs else x0 + _displaced(bound))
+    return Stir(bound.model.second_s * own_s, u, x0 if bound.model.inputs else x0 + _displaced(bound))
 
 
 def _rest(bound: BoundPlant) -> tuple[Array, Array]:
-    """State and inputs where the plant rests in the middle of its stops; where it rests nowhere, all at 0 and the inputs' least effort."""
+    """State and inputs where the plant rests in the middle of its stops, or without a position under the middle of its inputs' ranges: a
+    tank half open, an oven half on. Where it rests nowhere, all at 0 and the inputs' least effort."""
     model = bound.model
     arms = [axis for axis in model.axes if axis.position is not None]
+    if not arms:
+        with suppress(BadInput):
+            point = rest_under(bound, np.array([sum(bound.commands(variable)) / 2.0 for variable in model.inputs]))
+            return point.x0, point.u0
     middle = [
         0.0 if a.lower is None or a.upper is None else (bound.number(a.lower) + bound.number(a.upper)) / 2.0
         for a in arms

@@ -15,7 +15,7 @@ from sim.equations.check import RULES
 from sim.manoeuvres import stir
 from sim.plants import MODELS
 from sim.simulate import Conditions, simulate
-from tests.own_plants import PLAIN, REFUSED, WHEEL
+from tests.own_plants import HEATER, PLAIN, REFUSED, TANKS, WHEEL
 
 NAME = "my_plain"
 
@@ -170,6 +170,20 @@ def test_a_stir_stays_within_the_limits_and_begins_at_rest(folder: Path) -> None
     assert np.all(np.abs(moved.u) <= 10.0)
     assert moved.u[0] == pytest.approx([0.0], abs=1e-9)
     assert moved.x0 == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_a_stir_of_what_does_not_move_begins_at_rest_under_half_its_input_and_lasts_as_long_as_the_plant(
+    tmp_path: Path,
+) -> None:
+    # Truth: 30 W of 60 over 0.8 W/K is 37.5 K, in the 25 s of C / G; of the tanks the pump's half flows out under v^2 = 2 g h2.
+    heated = stir(bind(load_plant(HEATER.write(tmp_path / "heater", "heater"))))
+    assert heated.u[0] == pytest.approx([30.0])
+    assert heated.x0 == pytest.approx([37.5])
+    assert heated.t_s[-1] == pytest.approx(20.0 * 32.0)
+    filled = stir(bind(load_plant(TANKS.write(tmp_path / "tanks", "tanks"))))
+    assert filled.u.min() == pytest.approx(6.0 - 0.2 * 6.0)
+    level_m = (5e-5 * 6.0 / 1e-4) ** 2 / (2 * 9.81)
+    assert filled.x0 == pytest.approx([2 * level_m, level_m])
 
 
 def test_equations_that_differ_at_each_run_are_refused(folder: Path) -> None:
