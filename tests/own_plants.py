@@ -439,6 +439,10 @@ REFUSED: Mapping[str, tuple[OwnPlant, str]] = {
         _with('SensorPlace("theta_rad", "rad")', 'SensorPlace("theta_rad", "degree")'),
         "'degree' is not one of",
     ),
+    "other_length": (
+        _with("0.2, speed_size=5.0)", '0.2, speed_size=5.0, length_unit="m")'),
+        "got length_unit='m', expected 'rad', as in theta_rad",
+    ),
     "speed_as_angle": (SPEED_AS_ANGLE, "which is its speed"),
     "negative_inertia": (
         _with('p["J"], torque', '-p["J"], torque'),

@@ -256,7 +256,8 @@ def _functions(model: Model, equations: Equations) -> Iterator[Slip]:
         unknown = _without_text(whole)
         endless = () if words[0] in ("input_limits", "lower", "upper") else (sympy.oo, -sympy.oo)
         if whole.has(sympy.nan, sympy.zoo, sympy.I, *endless):
-            yield Slip(words, what, shown(expression), "a real number everywhere", "look for a division by 0")
+            slip = "take out the imaginary unit" if whole.has(sympy.I) else "look for a division by 0"
+            yield Slip(words, what, shown(expression), "a real number everywhere", slip)
         elif unknown is not None:
             got = f"{shown(expression)}, with {shown(unknown)}"
             expected = "sums, products, powers, sin, cos, tan and their inverses, exp, log, Abs, sign, Min, Max, Piecewise and the like"

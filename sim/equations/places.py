@@ -49,6 +49,7 @@ def place_slips(model: Model) -> Iterator[Slip]:
             )
     yield from _place_names(model)
     yield from _units(model)
+    yield from _lengths(model)
     yield from _sizes(model)
     yield from _gravity(model)
     yield from _rotors(model)
@@ -90,6 +91,16 @@ def _units(model: Model) -> Iterator[Slip]:
             continue
         if unit_suffix(column) and stated != dimension(coherent(unit_suffix(column))):
             yield Slip(words, what, f"the unit {unit!r}", f"that of {column}", "correct either")
+
+
+def _lengths(model: Model) -> Iterator[Slip]:
+    """What an axis' place is measured in, a spring's reciprocal, is what its column's name ends in."""
+    for name, entry in model.places.axes.items():
+        suffix = unit_suffix(entry.angle)
+        is_place = name in {axis.name for axis in model.axes if axis.position is not None}
+        if is_place and suffix and entry.length_unit != suffix:
+            got, expected = f"length_unit={entry.length_unit!r}", f"{suffix!r}, as in {entry.angle}"
+            yield Slip((name, "places"), f"place {name!r}", got, expected, "leave it out, or correct either")
 
 
 def _sizes(model: Model) -> Iterator[Slip]:

@@ -59,6 +59,7 @@ SLIPS = {
     "a function whose slope no C has": ("rates={theta: omega}", "rates={theta: sympy.gamma(2 + omega)}", "write it with these"),
     "a function of nobody's": ("{theta: omega}", '{theta: omega * sympy.Function("f")(omega)}', ", with f(omega_rad_s), expected"),
     "a quotient by nothing": ("{theta: omega}", "{theta: omega / sympy.Integer(0)}", "look for a division by 0"),
+    "an imaginary rate": ("{theta: omega}", "{theta: omega + sympy.I * theta}", "take out the imaginary unit"),
     "a rate without end": ("{theta: omega}", "{theta: omega * sympy.oo}", "a real number everywhere"),
     "a position that moves by itself": ("rates={theta: omega}", "rates={theta: 1.0}", "without the velocity omega_rad_s of axis 'arm'"),
     "an axis of another velocity": ('Axis("arm", theta, omega', 'Axis("arm", theta, u', "a state: "),
