@@ -10,7 +10,7 @@ from records.loops import LOOPS, MOST_LOOPS, Loop, demand_distinct, parse_loop
 from records.pages import page
 from records.text import checks
 from sim.bind import BoundPlant
-from sim.model import Axis, Model
+from sim.model import TIME, Axis, Model
 
 # Keys of [design] that are no loop; the range of the schedule has its angle in its name.
 _NO_LOOP = ("margins", "schedule", "tuned")
@@ -30,6 +30,12 @@ def loops_of(bound: BoundPlant) -> tuple[Loop, ...]:
     if not bound.model.inputs:
         remedy = "give the equations an input; without one `twinlaw simulate` shows how it moves, and `identify` and `diagnose` take it"
         raise BadInput("loops", where, f"equations of {bound.plant.model} without an input", "one to command", remedy)
+    if TIME in bound.nominal.state_rates().free_symbols:
+        expected = "equations that stay as they are: the poles are placed once"
+        remedy = f"take {TIME} out of them; `twinlaw simulate`, `identify` and `diagnose` take them with it"
+        raise BadInput(
+            "loops", where, f"equations of {bound.plant.model} that change with the time {TIME}", expected, remedy
+        )
     names = [key for key, entry in section.items() if isinstance(entry, Mapping) and key not in _NO_LOOP]
     if not 1 <= len(names) <= MOST_LOOPS:
         expected = f"1 to {MOST_LOOPS} sections, one a loop, as [design.arm] with output, input and poles_rad_s"

@@ -17,7 +17,7 @@ from sim.bind import BoundPlant, bind
 from sim.manoeuvres import steps
 from tests.angles import few_angles
 from tests.other_plants import AEROSHIELD, INVERTED_ARM, MOTOR, QUANSER, written
-from tests.own_plants import CART_POLE, FREE_SWING, FROM_THE_MAGNET, HEATER, MAGNET
+from tests.own_plants import CART_POLE, FREE_SWING, FROM_THE_MAGNET, HEATER, MAGNET, PLAIN
 from tests.soak import SOAK
 
 MAGNET_WISHES: dict[str, Any] = {
@@ -164,6 +164,16 @@ def test_a_plant_without_an_input_has_no_loop_and_is_told_so(tmp_path: Path) -> 
     for wishes in ({}, {"arm": {"poles_rad_s": [-4, -5, -6, -7]}}):
         with pytest.raises(BadInput, match=told):
             designed(swing, wishes)
+
+
+def test_equations_that_change_with_the_time_have_no_loop_and_are_told_so(tmp_path: Path) -> None:
+    """Truth: of a motor that grows warm over 10 s a law would be placed, and its margins told, as it is at 0 s, where it has no thrust."""
+    fading = replace(PLAIN, body=PLAIN.body.replace('p["K"] * u', 'p["K"] * u * (1 - sympy.exp(-TIME / 10))'))
+    file = fading.write(tmp_path, "fading")
+    equations = file.parent / "fading.py"
+    equations.write_text(equations.read_text().replace("from sim.model import ", "from sim.model import TIME, "))
+    with pytest.raises(BadInput, match=r"design: loops: got equations of fading that change with the time t_s"):
+        designed(bind(load_plant(file)), {"arm": {"poles_rad_s": [-4, -5, -6, -7]}})
 
 
 def test_of_several_outputs_one_is_asked_for(tmp_path: Path) -> None:
