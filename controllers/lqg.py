@@ -283,7 +283,7 @@ CONTROLLER = EquationController(
         "is 1.85 times the slowest wished pole for the regulator and 8 times for the filter. Where |1/(1 + L)| of a loop, the others "
         "closed, would pass 3, the regulators of all are slower, as far as an eighth; where that does not do, the faster loop is faster "
         "and the slower one slower. "
-        "It begins with the voltage that holds the arm where it is."
+        "It begins with the input that holds the plant where it is."
     ),
     equations=lambda table: Lqg(len(table.axes[0].gains.a)),
     gains=LqgGains,

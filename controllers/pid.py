@@ -174,14 +174,13 @@ CONTROLLER = EquationController(
         "closed, and settles; else one on which the gains of its [design.tuned.pid] do"
     ),
     note=(
-        "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 2, or where no gains do that below 3, "
-        "at every operating point, with Ti >= 4 Td, Tf = Td/10 and a crossover below the wished poles' geometric mean. One set of gains "
-        "reaches no less than 2.5 on the CE150's elevation over +-40 deg. The derivative is of the filtered angle, the integral is held by "
-        "back-calculation, references are filtered as the scheduled law's. Ti >= 4 Td was added when the azimuth overshot by 55 % without "
-        "it. Where a plant file has [design.tuned.pid], as `plants/ce150_velagic.toml`, gains and Tf are those: `twinlaw design "
-        "--controller pid --tune SEED` finds them by differential evolution, as those of the least mean |error| of both axes through a "
-        "flight of 120 s on that plant "
-        "(`verification/comparison/tuning.py`)."
+        "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 2, or where no gains do that below "
+        "3, at every operating point, with Ti >= 4 Td, Tf = Td/10 and a crossover below the wished poles' geometric mean. One set of "
+        "gains reaches no less than 2.5 where the plant changes as much as the CE150 does over +-40 deg. The derivative is of the "
+        "filtered angle, the integral is held by back-calculation, references are filtered as the scheduled law's. Ti >= 4 Td was added "
+        "when a loop of it overshot by 55 % without. Where a plant file has [design.tuned.pid], as `plants/ce150_velagic.toml`, gains and"
+        " Tf are those: `twinlaw design --controller pid --tune SEED` finds them by differential evolution, as those of the least mean "
+        "|error| of both axes through a flight of 120 s on that plant (`verification/comparison/tuning.py`)."
     ),
     equations=lambda _: Pid(),
     gains=PidGains,

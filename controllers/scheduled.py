@@ -17,7 +17,7 @@ class Scheduled:
 
     name = "scheduled"
     title = "scheduled pole placement"
-    source = "seed 000, section 3.4: coefficients as polynomials in the elevation"
+    source = "seed 000, section 3.4: coefficients as polynomials in what schedules them"
     plants = "any plant of one to four loops of up to five states, as `ce150`, that holds the margins of [design] over its range"
     note = (
         "is the table that `twinlaw run` flies ([theory.md](theory.md), sections 2 to 4): two poles a state of each axis and one "

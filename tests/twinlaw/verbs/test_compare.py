@@ -85,7 +85,11 @@ def test_another_plant_s_controllers_fly_its_own_steps(other: Path) -> None:
     assert "IAE of pitch in deg s / yaw in deg s" in page
     assert "Fig. 23" not in page
     assert "eq (28)" not in page
-    assert "they are that plant's. Here the loops are\npitch (theta_rad, by u_M_V) and yaw (psi_rad, by u_T_V)." in page
+    assert "are that plant's. Here the loops are\npitch (theta_rad, by u_M_V) and yaw (psi_rad, by u_T_V)." in page
+    # What it says of the laws that this plant has is of any plant; those that it cannot have are said to be a helicopter's.
+    said, _, refused = page.partition("Not designed for this plant")
+    assert not re.search(r"elevation|azimuth|\bphi|\barm\b", said)
+    assert "azimuth" in refused
 
 
 @pytest.mark.soak
