@@ -16,7 +16,8 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.linear_problem import Fit
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink
+from diagnosis.library.effect_library import EffectLibrary
+from diagnosis.search.exchange import exchange, fit_twins, is_twin, shrink, twins_of
 from diagnosis.search.fitting import Proposal, in_all_logs, is_astray, keep_better, once_more, refined, rough
 from diagnosis.search.noise_beside import with_noise_beside, with_noise_of
 from diagnosis.search.own_events import with_own_events
@@ -90,8 +91,11 @@ def first_fits(
     if lossy is not None and case.library.losses is not None:
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
     least = max(decisions.chance_nats(), decisions.NEGLIGIBLE_SHARE * score_tests[0].gain) if score_tests else 0.0
-    proposals = _promising(nominal.fit, score_tests, least)[: decisions.SINGLES]
-    proposals += _promising(nominal.fit, scored_as_stated(case, nominal.fit), least)[: decisions.SINGLES]
+    proposals = [
+        proposal
+        for tests in (score_tests, scored_as_stated(case, nominal.fit))
+        for proposal in _promising(nominal.fit, _of_all_kinds(case.library, tests), least)
+    ]
     begun = first_of_each(case, proposals, found)
     if beside is not None and len(beside.effects) == 1:
         keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
@@ -190,6 +194,16 @@ def beam_of(
 def _same_so_far(case: Case, entry: FittedHypothesis, other: FittedHypothesis) -> bool:
     """Whether the same will grow beside both: they are twins, and these data do not tell them apart."""
     return other.evidence - entry.evidence <= decisions.PLAIN_TO_SEE and is_twin(case.library, entry, other)
+
+
+def _of_all_kinds(library: EffectLibrary, score_tests: Sequence[ScoreTest]) -> list[ScoreTest]:
+    """The first of the score tests, and so many in all of which none is hardly told from one before: one cause that several effects look
+    like would else take the place of another, which to first order may promise less."""
+    kinds: list[ScoreTest] = []
+    for entry in score_tests:
+        alike = twins_of(library, entry.effect)
+        kinds += [] if any(other.effect in alike for other in kinds) else [entry]
+    return list(dict.fromkeys([*score_tests[: decisions.SINGLES], *kinds[: decisions.SINGLES]]))
 
 
 def _promising(start: Fit, score_tests: Sequence[ScoreTest], least: float) -> list[Proposal]:
