@@ -16,9 +16,10 @@ from diagnosis.explain.curve import Shape
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.beam import Alone, Search
+from diagnosis.search.beam import Search
 from diagnosis.search.free_curve import FittedCurve
 from diagnosis.search.retune import Retune
+from diagnosis.search.singles import Alone
 from diagnosis.validate.shrinkage import Predicted
 from records.diagnosis import Diagnosis, Firmware
 from records.log import RunLog

@@ -21,9 +21,9 @@ from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import HeldInputs, Material, Seen
-from diagnosis.search.beam import Alone, FirstFits, alone, first_fits
 from diagnosis.search.draughts import gust_shares, without_memory
 from diagnosis.search.lost_frames import with_losses
+from diagnosis.search.singles import Alone, FirstFits, alone, first_fits
 from diagnosis.validate.fitted_logs import FittedLogs
 from records.reasons import Decision
 from sim.added_effects import without_effects

@@ -60,7 +60,7 @@ def _first_that_takes_any(
     fewer = (next((entry for entry in ranked if len(entry.effects) == size), None) for size in sizes)
     could = (entry for entry in fewer if entry and entry not in near and _reach(case, entry, 0.0) > least)
     for entry in itertools.chain(near, could):
-        noisy = _with_memory(case, entry)
+        noisy = with_own_noise(case, entry)
         if noisy is None or noisy.evidence <= least or not has_memory(case, noisy.fit.hypothesis):
             continue
         if entry in near or _predicts_as_well(case, noisy, ranked[0]):
@@ -176,7 +176,7 @@ def _own_noise(
         back = 1.0 if has_memory(case, shared.fit.hypothesis) else decisions.PARAMETERS_BACK
         if promised < decisions.TAKEN_IN or shared.evidence + back * promised < least:
             return max(found, key=lambda entry: entry.evidence)
-    own = _with_memory(case, fitted)
+    own = with_own_noise(case, fitted)
     return max((*found, *([] if own is None else [own])), key=lambda entry: entry.evidence, default=None)
 
 
@@ -224,7 +224,7 @@ def _promised(case: Case, fitted: FittedHypothesis) -> float:
     return better_noise_of(case, fitted.fit.hypothesis)
 
 
-def _with_memory(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
+def with_own_noise(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
     """The hypothesis with its noise with a memory, or itself where that is no likelier; None where it would be more than noise."""
     found = with_memory(case, fitted.fit)
     return fitted if found is fitted.fit else _noise_alone(case, fitted, found)

@@ -9,8 +9,8 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.search.beam import scored_as_stated
 from diagnosis.search.fitting import once_more, refined
+from diagnosis.search.singles import scored_as_stated
 from tests.diagnosis.arm import arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
 

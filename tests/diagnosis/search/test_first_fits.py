@@ -4,8 +4,8 @@ from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.evidence import as_fitted
-from diagnosis.search.beam import alone, first_fits
 from diagnosis.search.exchange import twins_of
+from diagnosis.search.singles import alone, first_fits
 from tests.diagnosis.arm import arm_case, arm_log
 from tests.diagnosis.nominal import nominal_fit
 

@@ -19,9 +19,10 @@ from diagnosis.fit.linear_problem import Fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.beam import Alone, Search, first_of_each, search, worth_ending
+from diagnosis.search.beam import Search, search
 from diagnosis.search.exchange import exchange, fit_twins, shrink
 from diagnosis.search.fitting import Proposal, once_more, refined, rough
+from diagnosis.search.singles import Alone, first_of_each, worth_ending
 from diagnosis.search.sure_sizes import certainties
 from sim.added_effects import library
 from sim.bind import BoundPlant
