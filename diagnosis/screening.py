@@ -72,7 +72,7 @@ def _detected(
     others = None if checked is None or held is None else with_commands(checked, commands)
     seen, names = _screened(logs, others or checked, noisy(logs, nominal), between, beside)
     if names is None or held is None:
-        return seen
+        return replace(seen, held=held)
     rule, as_logged = held_beside(case, commands, names.best)
     if not as_logged:
         return replace(seen, held=held).because(rule)

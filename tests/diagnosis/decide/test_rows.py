@@ -17,6 +17,7 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
+from diagnosis.screening import alarmed, detected
 from identification.runs.rows import trimmed
 from records.errors import BadInput
 from records.log import RunLog
@@ -97,6 +98,18 @@ def test_commands_that_another_reading_of_the_rows_follows_half_as_well_are_told
     gain = note.numbers["gain_nats"]
     assert [note.kind for note in demand_rows(case, nominal, "the logs", beaten=0.5 * gain)] == ["columns_late"]
     assert demand_rows(case, nominal, "the logs", beaten=gain - 5.0) == ()
+
+
+def test_commands_are_asked_as_held_where_no_gap_is_left_once_they_move_between_rows(
+    stateless: EffectLibrary, fly: Fly
+) -> None:
+    # Truth: both commands stand one row late, and nothing is missing; inputs that go straight from row to row take up half of that.
+    case = make_case(stateless, [logged(fly(31, seconds=SECONDS), Misplaced((0, 1), 1))])
+    seen = detected(case, None)
+    assert not alarmed(seen.detection.p)
+    assert seen.held is not None
+    with pytest.raises(BadInput, match="u_M_V and u_T_V stand one row late in the log"):
+        demand_rows(seen.held.case, seen.held.fit, "the logs to explain", beaten=seen.held.beaten)
 
 
 def test_commands_in_their_rows_are_not_doubted(stateless: EffectLibrary, fly: Fly) -> None:
