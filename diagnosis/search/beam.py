@@ -1,6 +1,6 @@
 """The search for what is missing: pairs and triples from the best of each size, single effects first, every one fitted with the plant."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from diagnosis import decisions
@@ -41,8 +41,7 @@ class Search:
 
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
     """Fit pairs and triples of `names` that grow from the single effects."""
-    grown_from = under_noise(case, begun)
-    found, first, worth = dict(grown_from.found), begun.nominal, grown_from.worth
+    found, first, worth = dict(begun.found), begun.nominal, begun.worth
     for beam in (decisions.NEXT, decisions.NEXT - 1):  # pairs, then triples
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of(case, [entry for entry in found.values() if len(entry.effects) == size], first, beam)
@@ -54,6 +53,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         fit_twins(case, found, best_of(found))
         if best_of(found).evidence <= best[0].evidence:
             break
+    _add_under_noise(case, found, under_noise(case, begun), names, worth)
     _settle(case, found, first)
     told = [entry for entry in found.values() if happened(case, entry.fit.hypothesis)]
     certain = [entry for entry in told if is_certain(entry, found)]
@@ -117,6 +117,23 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis], nominal: 
     keep_better(
         found, with_noise_beside(case, [entry for entry in found.values() if is_certain(entry, found)], nominal)
     )
+
+
+def _add_under_noise(
+    case: Case,
+    found: dict[frozenset[str], FittedHypothesis],
+    singles: Mapping[frozenset[str], FittedHypothesis],
+    names: Sequence[str],
+    worth: frozenset[str],
+) -> None:
+    """Add single effects that lead under noise with a memory to what was `found` without, and pairs that grow from the best of them: such
+    noise hides what a further effect explains, so that pairs of the others are sought without."""
+    if not singles:
+        return
+    keep_better(found, singles.values())
+    leads = best_of(singles)
+    grown, _ = _grown(case, [leads], names, worth)
+    fit_to_end(case, first_of_each(case, grown, found), found, leads)
 
 
 def _grown(

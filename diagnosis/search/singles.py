@@ -92,9 +92,8 @@ def alone(case: Case, first: FirstFits) -> Alone:
     return Alone(found, first.nominal, worth_testing(first.score_tests), first.linearisation, first.score_tests)
 
 
-def under_noise(case: Case, usual: Alone) -> Alone:
-    """Single effects begun anew under the noise with a memory that the likeliest of them leaves, where then another one leads; else the
-    same.
+def under_noise(case: Case, usual: Alone) -> dict[frozenset[str], FittedHypothesis]:
+    """Single effects begun anew under the noise with a memory that the likeliest of them leaves, where then another one leads; else none.
 
     White noise alone says that the plant told all that is smooth: it bends parameters, and prefers names that smooth. Those are asked that
     promise a fair share of the most there.
@@ -102,19 +101,19 @@ def under_noise(case: Case, usual: Alone) -> Alone:
     best = best_of(usual.found) if usual.found else None
     noisy = None if best is None else with_own_noise(case, best)
     if best is None or noisy is None or noisy.evidence < best.evidence + decisions.PLAIN_TO_SEE:
-        return usual
+        return {}
     plain = _plain_under(case, usual, noisy)
     begun = [] if plain is None else _begun_under(case, plain, [noisy], usual.worth)
     if not begun or plain is None:
-        return usual
+        return {}
     found = {frozenset(entry.effects): entry for entry in (noisy, *begun)}
     near = sorted(worth_ending(begun, plain), key=lambda entry: -entry.evidence)[: decisions.NEXT]
     keep_better(found, [end for end in thread_map(lambda entry: with_own_noise(case, entry), near) if end is not None])
     leads = best_of(found)
     if leads.evidence < noisy.evidence + decisions.PLAIN_TO_SEE or is_twin(case.library, leads, best):
-        return usual
+        return {}
     fit_twins(case, found, leads)
-    return replace(usual, found=found)
+    return found
 
 
 def _begun_under(
