@@ -146,6 +146,7 @@ def scored_as_stated(case: Case, nominal: Fit) -> list[ScoreTest]:
 
 
 def best_of(found: Mapping[frozenset[str], FittedHypothesis]) -> FittedHypothesis:
+    """The likeliest of what was found, beside its prior."""
     return max(found.values(), key=lambda entry: entry.evidence)
 
 
