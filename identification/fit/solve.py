@@ -46,6 +46,16 @@ def solve(problem: Problem, watch: Watch | None = None, settled: float = SETTLED
     return point
 
 
+def leapt(problem: Problem) -> Problem:
+    """The problem from where one undamped step leads, if that is better.
+
+    Along a direction that only the prior tells, damping by the data's slopes, which an unstable plant lets grow, stops every step short.
+    """
+    before = at(problem, problem.start, problem.runs)
+    theta, runs, _ = _step(problem, before, 0.0)
+    return replace(problem, start=theta, runs=runs) if at(problem, theta, runs).cost < before.cost else problem
+
+
 def _step(problem: Problem, point: Point, damping: float) -> tuple[Array, tuple[Run, ...], float]:
     """The damped step: new parameters, runs at their new starts, and its length in standard deviations, squared."""
     prior = problem.prior

@@ -11,7 +11,7 @@ from identification.frequency.match.intervals import BLIND, slopes
 from identification.frequency.models.linear_model import held_response
 from identification.frequency.pairs import Pair
 from identification.frequency.responses.conditioned import Responses
-from identification.results.result import Estimated
+from identification.results.result import FILE_COUNTS, Estimated
 from records.quality import MISFIT
 from records.text.uncertain import with_sd
 
@@ -33,9 +33,7 @@ def notes_on(estimates: Sequence[Estimated], fit: FrequencyFit, pairs: Sequence[
         if not entry.identified:
             by_data = f"{entry.name} (by the data {with_sd(entry.by_data, entry.by_data_sd)} {entry.unit})"
             reasons.setdefault(_reason(fit, entry.name), []).append(by_data)
-    untold = [
-        f"not told: {', '.join(names)}; {reason}; the plant file's value is kept" for reason, names in reasons.items()
-    ]
+    untold = [f"not told: {', '.join(names)}; {reason}; {FILE_COUNTS}" for reason, names in reasons.items()]
     silent = [
         f"{pair.input} to {pair.output}: not matched, as its coherence is nowhere {thresholds.GOOD_COHERENCE:g} over four frequencies "
         f"(at most {pair.coherence:.2f})"

@@ -1,7 +1,7 @@
 """What an identification in the frequency domain tells: estimates, the match of each pair, checks in time."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,8 @@ from identification.frequency.pairs import Pair, pairs_of
 from identification.frequency.responses.record import Record
 from identification.results.facts import facts
 from identification.results.notes import bound_warning
-from identification.results.result import Identification, identification
+from identification.results.result import Identification, Matched, identification
+from identification.results.told import combined
 from records.plant import Plant
 
 Array = NDArray[np.float64]
@@ -48,7 +49,7 @@ class TimeCheck:
 class FrequencyIdentification:
     """Estimates and plant (`result`), the fit behind them, its pairs, checks in time.
 
-    theta and covariance are as plant.toml holds them: what the data do not tell is as the plant file had it. T (f, outputs, inputs) is
+    theta and covariance are as plant.toml holds them, with what the plant file knows of what data tell poorly. T (f, outputs, inputs) is
     the response at theta, T_stated that of the plant file as it was. `doubt` is what its logs leave in doubt of all of it, in one sentence.
     """
 
@@ -74,20 +75,20 @@ def frequency_identification(
 ) -> FrequencyIdentification:
     """All that is to be told about a match; `signs` are `signs_of` the plant's model, where it has one of this project."""
     begun = dict(zip(fit.model.names, fit.searches[0].start.tolist(), strict=True))
-    result = identification(plant, (), Belief(fit.model.names, fit.theta, fit.covariance), begun=begun, signs=signs)
+
+    def settled(belief: Belief, known: Belief) -> Belief:
+        """Responses are not linear in the parameters: what hangs together with those known besides is matched again."""
+        both = combined(belief, known)
+        return replace(both, mean=fit.with_held(known.names, both.mean))
+
+    belief = Belief(fit.model.names, fit.theta, fit.covariance)
+    result = identification(plant, (), belief, signs=signs, matched=Matched(begun, settled))
     theta = np.array([entry.value for entry in result.estimates])
     T, T_stated = fit.response(theta), fit.response(fit.model.start)
     pairs = tuple(pairs_of(fit, T, T_stated))
     checks = tuple(time_check(plant, fit, theta, record) for record in holdout)
     notes = notes_on(result.estimates, fit, pairs)
-    return FrequencyIdentification(result, fit, theta, _covariance(result, fit), T, T_stated, pairs, checks, notes)
-
-
-def _covariance(result: Identification, fit: FrequencyFit) -> Array:
-    """That of the match, and the plant file's sd, correlated with nothing, where its value is kept."""
-    told = np.array([entry.identified for entry in result.estimates])
-    kept = np.diag([0.0 if entry.identified else entry.sd**2 for entry in result.estimates])
-    return np.asarray(np.where(np.outer(told, told), fit.covariance, kept))
+    return FrequencyIdentification(result, fit, theta, result.belief.covariance, T, T_stated, pairs, checks, notes)
 
 
 def time_check(plant: Plant, fit: FrequencyFit, theta: Array, record: Record) -> TimeCheck:

@@ -1,19 +1,20 @@
 """What an identification hands on: a plant file with earned sd and correlations, and all that is to be told about how it came about."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from identification import thresholds
 from identification.experiments.table import aid_unit
 from identification.fit.belief import Belief
 from identification.results.notes import bound_warning, relative, stage_notes
 from identification.results.plant_file import numbers, with_belief, with_values
-from identification.stages.estimate import Data, Estimate, interval_factor, interval_factors
+from identification.results.told import by_data, combined, of_file
+from identification.stages.estimate import Data, Estimate, counting, interval_factor, interval_factors
 from identification.uncertainty.residuals import ResidualTest
 from records.plant import Plant, coefficient_names
 from sim.model import Model
 
+FILE_COUNTS = "what the plant file knows of it counts beside the data, in every estimate and interval"
 INTERRUPTED = "the best so far of a fit that was interrupted"
 NORMAL = 1.96  # half the width of a 95 % interval of a normal distribution, in standard deviations
 MOST_POWERS = 50.0  # of e: an interval that reaches over more factors says nothing more
@@ -26,7 +27,8 @@ class Estimated:
     What must be positive, a time constant or an inertia, is taken as normal by its logarithm, so its interval ends above zero: where
     the sd is a small share of the value it is the usual one, value -+ so many sd. That of what must not be negative, a dry friction,
     ends at 0.
-    One that they did not tell keeps the plant file's value and sd; `by_data` and `by_data_sd` are what the data say of each.
+    One that they did not tell (`identified` false) counts with what the plant file knows of it (`identification.results.told`);
+    `by_data` and `by_data_sd` are what the data alone say of each.
     """
 
     name: str
@@ -97,11 +99,19 @@ class Identification:
         if not poor:
             return ()
         remedy = "free fewer of them (--free), or add experiments that tell them apart"
-        return (f"these data are too poor for {', '.join(poor)}; the plant file's value is kept: {remedy}",)
+        return (f"these data are too poor for {', '.join(poor)}; {FILE_COUNTS}: {remedy}",)
 
 
 def _share(entry: Estimated) -> str:
     return relative(entry.by_data_sd / abs(entry.by_data)) if entry.by_data else f"{entry.by_data_sd:.2g} {entry.unit}"
+
+
+@dataclass(frozen=True)
+class Matched:
+    """A fit without stages: where it started, by name, and what its belief becomes with what is known besides."""
+
+    begun: Mapping[str, float]
+    settled: Callable[[Belief, Belief], Belief] = combined
 
 
 def identification(
@@ -109,26 +119,40 @@ def identification(
     stages: Sequence[tuple[Data, Estimate]],
     belief: Belief,
     aids: Sequence[tuple[Belief, float]] = (),
-    begun: Mapping[str, float] | None = None,
     signs: Mapping[str, str] | None = None,
+    matched: Matched | None = None,
 ) -> Identification:
-    """Put the final belief into the plant; what the data do not tell keeps the file's value and sd.
+    """Put the final belief into the plant, with what the file knows of what the data do not tell (`identification.results.told`).
 
-    `begun` tells where a fit that is none of the `stages` started, by name; `signs` are `signs_of` the plant's model.
+    `signs` are `signs_of` the plant's model, `matched` tells of a fit that is none of the `stages`.
     """
-    stated = numbers(plant)
-    factors = interval_factors(stage for _, stage in stages)
-    began = _begun(stages) if begun is None else begun
-    loose = _loose_sds(stages, belief)
+    factors = dict.fromkeys(belief.names, NORMAL) | interval_factors(stage for _, stage in stages)
+    began = _begun(stages) if matched is None else matched.begun
+    alone = by_data(plant, belief, _loose_sds(stages, belief), factors)
+    known = of_file(plant, [name for name, entry in alone.items() if not entry.told], stages)
+    if known.names and stages:
+        stages = (*stages[:-1], (stages[-1][0], counting(stages[-1][1], known)))
+        aids = [(_of_last(part, stages[-1][1]), dof) for part, dof in aids]
+        belief = stages[-1][1].belief.part(belief.names)
+    elif known.names:
+        belief = (matched.settled if matched else combined)(belief, known)
+    units, sign = numbers(plant), signs or {}
 
     def estimated(name: str) -> Estimated:
-        file = _Stated(*stated[name], (signs or {}).get(name, "any"))
-        return _estimated(name, began[name], file, belief, factors.get(name, NORMAL), loose[name])
+        data, factor = alone[name], NORMAL if name in known.names else factors[name]
+        value, sd = _told(name, belief)
+        ends = interval(value, factor * sd, sign.get(name, "any"))
+        by_data_sd = data.sd if data.told else data.loose_sd
+        return Estimated(name, units[name][2], began[name], value, sd, *ends, data.told, data.value, by_data_sd)
 
     estimates = tuple(map(estimated, belief.names))
     aided = tuple(_aid(name, began[name], part, interval_factor(dof)) for part, dof in aids for name in part.names)
-    told = with_belief(plant, belief, [entry.name for entry in estimates if entry.identified])
-    return Identification(told, estimates, belief, tuple(stages), aided)
+    return Identification(with_belief(plant, belief, belief.names), estimates, belief, tuple(stages), aided)
+
+
+def _of_last(part: Belief, last: Estimate) -> Belief:
+    """What the last fit needed besides, as it is by now; that of one before stays as it is."""
+    return last.belief.part(part.names) if set(part.names) <= set(last.belief.names) else part
 
 
 def _begun(stages: Sequence[tuple[Data, Estimate]]) -> dict[str, float]:
@@ -162,29 +186,6 @@ def interval(value: float, reach: float, sign: str = "any") -> tuple[float, floa
         return value - reach, value + reach
     factor = math.exp(min(reach / value, MOST_POWERS))
     return value / factor, value * factor
-
-
-@dataclass(frozen=True)
-class _Stated:
-    """What the plant file says of a coefficient, and its model of the sign."""
-
-    value: float
-    sd: float
-    unit: str
-    sign: str
-
-
-def _estimated(name: str, start: float, stated: _Stated, belief: Belief, factor: float, loose_sd: float) -> Estimated:
-    """What is kept of both; what the plant file states as 0 has no size by which to be called poor.
-
-    `loose_sd` is the sd had it not been given a size.
-    """
-    value, sd = _told(name, belief)
-    loose_sd, size = max(sd, loose_sd), max(abs(stated.value), abs(value), stated.sd)
-    told = factor * loose_sd < thresholds.FARTHEST * size or stated.value == 0.0
-    kept, kept_sd, reach = (value, sd, factor) if told else (stated.value, stated.sd, NORMAL)
-    lower, upper = interval(kept, reach * kept_sd, stated.sign)
-    return Estimated(name, stated.unit, start, kept, kept_sd, lower, upper, told, value, sd if told else loose_sd)
 
 
 def _aid(name: str, start: float, belief: Belief, factor: float) -> Estimated:

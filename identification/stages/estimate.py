@@ -10,9 +10,9 @@ from scipy.special import stdtrit
 from identification.fit.belief import Belief, prior, widened
 from identification.fit.information import inverse, marginal
 from identification.fit.normal_equations import ROUNDING, Point, at, growth
-from identification.fit.problem import Problem, Told, by_name
+from identification.fit.problem import Prior, Problem, Told, by_name
 from identification.fit.ranges import Range
-from identification.fit.solve import Watch, solve
+from identification.fit.solve import Watch, leapt, solve
 from identification.fit.steps import MOST_PER_SAMPLE, SHIFT_SD, finer, in_steps_of, shift_sd
 from identification.runs.run import Run
 from identification.search.methods import Search, Searched, search, started
@@ -48,6 +48,7 @@ class Estimate:
     `at_bound` names parameters that ended at a bound of their range: the data pull them further, and their intervals mean little.
     `discords` name those in which runs that were fitted together contradict one another. `start` is where the fit began, by name,
     `growth` how far slopes grew within a window, and `loose_sd` the sd of each had those of `own` been held `LOOSER` times as loosely.
+    Of those `fresh` nothing was known before but a size. `problem` is the last one that was solved, its readings weighted.
     """
 
     belief: Belief
@@ -61,6 +62,8 @@ class Estimate:
     residuals: tuple[ResidualTest, ...]
     runs: tuple[Run, ...]
     start: Mapping[str, float]
+    problem: Problem
+    fresh: tuple[str, ...]
     searched: tuple[Searched, ...] = ()
     discords: tuple[Discord, ...] = ()
     growth: float = 1.0
@@ -142,6 +145,8 @@ def _estimate(
         residuals=tests_at(point),
         runs=point.runs,
         start=start,
+        problem=problem,
+        fresh=tuple(name for name in problem.names if name not in before.names),
         searched=searched,
         discords=discords(problem, point),
         growth=growth(point),
@@ -149,20 +154,57 @@ def _estimate(
     )
 
 
+def counting(fit: Estimate, known: Belief) -> Estimate:
+    """The fit made again with what is `known` of some of its parameters as one more reading: V + |theta - known|^2 over its covariance.
+
+    What merely gave these a size falls away. What the data alone say of contradictions, directions and degrees of freedom stays as it is.
+    """
+    problem = fit.problem
+    places = [problem.names.index(name) for name in known.names]
+    both, mean = problem.prior.information.copy(), problem.prior.mean
+    fresh = [place for place in places if problem.names[place] in fit.fresh]
+    both[fresh, fresh] -= 1.0 / problem.scale[fresh] ** 2
+    firm = inverse(known.covariance)
+    both[np.ix_(places, places)] += firm
+    # Two normal distributions make one: the sum of both informations, about the mean that both draw to.
+    pull = np.zeros(mean.size)
+    pull[places] = firm @ (known.mean - mean[places])
+    centre = mean + inverse(both) @ pull
+    problem = leapt(replace(problem, start=fit.belief.mean, runs=fit.runs, prior=Prior(centre, both)))
+    point = solve(problem)
+    return replace(
+        fit,
+        belief=Belief(problem.names, point.theta, inverse(point.H + both)),
+        cost=point.cost,
+        steps=fit.steps + point.steps,
+        at_bound=_at_bound(problem, point),
+        residuals=tests_at(point),
+        runs=point.runs,
+        problem=problem,
+        growth=growth(point),
+    )
+
+
 def _loose_sd(problem: Problem, point: Point, before: Belief) -> dict[str, float]:
     """The sd by name with the weak prior `LOOSER` times as wide: of a direction that many share each holds so little that it looks told."""
-    given = (1.0 - LOOSER**-2) * np.diag(_weak(problem, before))
-    sd = np.sqrt(np.diag(inverse(point.H + problem.prior.information - given)))
+    # By eigenvectors: beside what data tell well of one direction a matrix has no digits left for what they do not of another.
+    values, vectors = np.linalg.eigh(_known(problem, point, before) * np.outer(problem.scale, problem.scale))
+    sd = problem.scale * np.sqrt(vectors**2 @ (1.0 / (np.maximum(values, 0.0) + LOOSER**-2)))
     return dict(zip(problem.names, sd.tolist(), strict=True))
 
 
 def _unseen(problem: Problem, point: Point, own: tuple[str, ...], before: Belief) -> tuple[Direction, ...]:
     """Directions of `own` that neither the data nor what was known before tell."""
+    places = [problem.names.index(name) for name in own]
+    known = marginal(_known(problem, point, before), places, problem.scale)
+    return unseen(own, known, problem.scale[places])
+
+
+def _known(problem: Problem, point: Point, before: Belief) -> Array:
+    """The information of data and of what was known before, less what only gives a size."""
     # What rounding was given stands for no reading: no direction is known by it.
     rounding = 2.0 * ROUNDING * np.diag(np.diag(point.JtJ))
-    known = point.H - rounding + problem.prior.information - np.diag(_weak(problem, before))
-    places = [problem.names.index(name) for name in own]
-    return unseen(own, marginal(known, places, problem.scale), problem.scale[places])
+    return np.asarray(point.H - rounding + problem.prior.information - np.diag(_weak(problem, before)))
 
 
 def _at_bound(problem: Problem, point: Point) -> tuple[str, ...]:

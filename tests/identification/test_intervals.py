@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from identification.fit.belief import Belief
-from identification.results.result import NORMAL, Identification, identification, interval, signs_of
+from identification.results.result import NORMAL, Identification, Matched, identification, interval, signs_of
 from tests.plants import bound
 
 SHARE = 0.25  # of a value is its sd: poor, and yet told
@@ -17,7 +17,7 @@ def found(**sd: float) -> Identification:
     values = np.array([plant.parameters[name].value for name in sd])
     began = dict(zip(sd, values.tolist(), strict=True))
     belief = Belief(tuple(sd), values, np.diag(np.square(list(sd.values()))))
-    return identification(plant, (), belief, begun=began, signs=signs_of(rig.model))
+    return identification(plant, (), belief, signs=signs_of(rig.model), matched=Matched(began))
 
 
 def test_an_interval_of_a_positive_parameter_is_one_of_factors_and_ends_above_zero() -> None:
@@ -31,11 +31,11 @@ def test_an_interval_of_a_positive_parameter_is_one_of_factors_and_ends_above_ze
 
 
 def test_that_of_one_the_data_do_not_tell_ends_above_zero_too() -> None:
-    # Truth: the file states K as 0.01 with an sd of 0.02, which reaches below zero.
-    (kept,) = found(K=1.0).estimates
-    assert not kept.identified
-    assert (kept.value, kept.sd) == (0.01, 0.02)
-    assert 0.0 < kept.lower < kept.value < kept.upper
+    # Truth: the file states K as 0.01 with an sd of 0.02, which reaches below zero; data that tell it to 1 add a hundredth of a per cent.
+    (poor,) = found(K=1.0).estimates
+    assert not poor.identified
+    assert (poor.value, poor.sd) == pytest.approx((0.01, 1.0 / np.hypot(1.0 / 0.02, 1.0)))
+    assert 0.0 < poor.lower < poor.value < poor.upper
 
 
 def test_that_of_a_friction_ends_at_zero() -> None:

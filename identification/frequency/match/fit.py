@@ -62,6 +62,23 @@ class FrequencyFit:
         assert T is not None
         return T
 
+    def with_held(self, names: Sequence[str], theta: Array) -> Array:
+        """theta with those of `names` as they are in it and the others matched again, searched from there; (parameters,)."""
+        free = np.array([name not in names for name in self.model.names])
+        work = _Work(self.model, self.records, self.responses)
+        F = work.mismatch(self.points)
+
+        def of_free(values: Array) -> Array | None:
+            whole = theta.copy()
+            whole[free] = values
+            return F(whole)
+
+        found = secant_search(of_free, theta[free], work.size[free]) if free.any() else None
+        if found is not None:
+            theta = theta.copy()
+            theta[free] = found.theta
+        return theta
+
     def matched_cost(self, points: Target) -> float:
         """J of the model matched with other `points`, searched from theta on."""
         work = _Work(self.model, self.records, self.responses)

@@ -147,18 +147,32 @@ class LeverLag(Lag):
         return super().matrices(np.array([theta[0] * theta[1], theta[2]]))
 
 
-def test_parameters_that_can_change_together_unseen_are_told_as_that():
-    """Truth: T 0.5 s is known to a per cent; force and lever each to no better than themselves, and the search stays at its own start."""
-    sweep, rng = design_sweep(0.8, 8.0, 0.05), np.random.default_rng(4)
+def _of_lever(rng):
+    """The match of a sweep of it, with noise."""
+    sweep = design_sweep(0.8, 8.0, 0.05)
     u = sweep_input(sweep, 0.05 * np.arange(round(sweep.duration_s / 0.05)), 1.0)[:, None]
     keep = np.exp(-0.05 / 0.5)
     y = lfilter([0.0, 2.0 * (1.0 - keep)], [1.0, -keep], u, axis=0) + 0.01 * rng.standard_normal(u.shape)
-    fit = match(LeverLag(), [Record("lag", 0.05, u, y, u)], (0.8, 8.0))
+    return match(LeverLag(), [Record("lag", 0.05, u, y, u)], (0.8, 8.0))
+
+
+def test_parameters_that_can_change_together_unseen_are_told_as_that():
+    """Truth: T 0.5 s is known to a per cent; force and lever each to no better than themselves, and the search stays at its own start."""
+    fit = _of_lever(np.random.default_rng(4))
     force, lever, lag = fit.sd / np.abs(fit.theta)
     assert min(force, lever) > 0.9
     assert lag < 0.01
     assert together(fit) == [["force", "lever"]]
     np.testing.assert_allclose(fit.theta, LeverLag.start, rtol=0.05)
+
+
+def test_with_some_held_the_others_are_matched_again():
+    """Truth: force times lever is 2, whatever the force is held at; T stays 0.5 s."""
+    fit = _of_lever(np.random.default_rng(4))
+    force, lever, lag = fit.with_held(("force",), np.array([2.0, fit.theta[1], fit.theta[2]]))
+    assert force == 2.0
+    assert force * lever == pytest.approx(2.0, rel=0.01)
+    assert lag == pytest.approx(0.5, rel=0.02)
 
 
 INPUTS = ("inputs", (0.8, 0.8), 0.4, 4.0)

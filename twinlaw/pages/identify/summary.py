@@ -58,7 +58,7 @@ def _against(entry: Estimated, known: float | None) -> tuple[str, str, str]:
 
 
 def _untold(entry: Estimated) -> str:
-    return "" if entry.identified else "kept"
+    return "" if entry.identified else "poorly told"
 
 
 def _relative(entry: Estimated) -> str:

@@ -49,13 +49,14 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
         done = _from_experiments(bound, inputs.experiments, wishes, so_far)
         if inputs.logs:
             done = _from_logs(bound, inputs.logs, wishes, done, so_far)
-    flags = (*_untold(bound, inputs.logs, wishes, done), *_held(bound, done))
-    result = replace(so_far.finished(done), remarks=inputs.notes, flags=flags, doubt=inputs.doubt)
+    result = so_far.finished(done)
+    flags = (*_untold(bound, inputs.logs, wishes, done), *_held(bound, result))
+    result = replace(result, remarks=inputs.notes, flags=flags, doubt=inputs.doubt)
     save_result(folder, result)
     if not inputs.holdout:
         return result
     with console.stage("predicting the logs held out"):
-        shifts = {name: part.value(name) for part, _ in done.aids for name in part.names if name.startswith("offset.")}
+        shifts = {entry.name: entry.value for entry in result.aids if entry.name.startswith("offset.")}
         result = replace(result, holdout=prediction_tests(bind(result.plant), inputs.holdout, shifts))
     save_result(folder, result)
     return result
@@ -105,9 +106,9 @@ def _untold(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, done:
     return tuple(f"{text}; the plant file's value is kept" for text, names in said.items() if names)
 
 
-def _held(bound: BoundPlant, done: Done) -> tuple[str, ...]:
+def _held(bound: BoundPlant, result: Identification) -> tuple[str, ...]:
     """What the intervals of the last fit take as exact though the plant file does not know it so well."""
-    data, fit = done.stages[-1]
+    data, fit = result.stages[-1]
     return leaning_notes(data.title, leaning(bound, fit))
 
 
