@@ -22,6 +22,8 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
+# In the plant's own seconds (Model.second_s): within half a second an oven moves by less than a step of its probe, and a start from that
+# leads a fit astray.
 COARSE_S = 0.5
 COARSE_WINDOWS = 40  # of each log: enough for a start
 COARSE_SETTLED = 10.0
@@ -94,9 +96,10 @@ def identify_logs(
 
 def _short_windows(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Run, ...]:
     """Short windows spread over each log."""
-    counts = {name: (log.t_s[-1] - log.t_s[0]) / COARSE_S for name, log in logs.items()}
+    coarse_s = COARSE_S * bound.model.second_s
+    counts = {name: (log.t_s[-1] - log.t_s[0]) / coarse_s for name, log in logs.items()}
     return tuple(
-        followed(run_of(bound, log, name, COARSE_S, max(1, int(counts[name] // COARSE_WINDOWS))))
+        followed(run_of(bound, log, name, coarse_s, max(1, int(counts[name] // COARSE_WINDOWS))))
         for name, log in logs.items()
     )
 
