@@ -26,9 +26,14 @@ def saturations(log: RunLog, limits: Mapping[str, tuple[float, float]]) -> dict[
     result = {}
     for name in log.columns.inputs:
         low, high = limits.get(name, (-np.inf, np.inf))
-        u, margin = log.column(name), NEAR_LIMIT * (high - low) if np.isfinite(high - low) else 0.0
+        u, margin = log.column(name), _margin(low, high)
         result[name] = Saturation(float(np.mean(u <= low + margin)), float(np.mean(u >= high - margin)))
     return result
+
+
+def _margin(low: float, high: float) -> float:
+    """How near to a limit an input is at it; of limits on one side alone, which have no span, none."""
+    return NEAR_LIMIT * (high - low) if np.isfinite(high - low) else 0.0
 
 
 def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, float]]) -> Iterator[Found]:
@@ -36,7 +41,7 @@ def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, flo
     shares_of = saturations(log, limits)
     for column, (low, high) in limits.items():
         shares = shares_of[column]
-        u, margin = log.column(column), NEAR_LIMIT * (high - low)
+        u, margin = log.column(column), _margin(low, high)
         sides = [(low, shares.lower, u <= low + margin), (high, shares.upper, u >= high - margin)]
         shown = [
             f"{share:.1%} of the rows at {_told(limit, column)}{_when(log.t_s, rows)}"

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from logcheck.inputs import input_findings
 from logcheck.integrity import as_read, as_sent
 from tests.logcheck.flight import clean, examined, kinds, with_column
 
@@ -19,6 +20,15 @@ def test_saturation_and_inputs_beyond_the_limits_are_shares_of_the_rows() -> Non
     # Truth: 500 of 2001 rows.
     (saturated,) = (entry for entry in found.findings if entry.kind == "saturated" and entry.column == "u_T_V")
     assert "25.0% of the rows at 10 V" in saturated.sentence
+
+
+@pytest.mark.parametrize("limits", [(-4.0, 10.0), (-4.0, np.inf)])
+def test_an_input_beyond_a_limit_is_told_whether_or_not_there_is_another(limits: tuple[float, float]) -> None:
+    log = clean()
+    u = log.u.copy()
+    u[500:600, 1] = -5.0
+    told = {entry.finding.kind for entry in input_findings(replace(log, u=u), "log", {"u_T_V": limits})}
+    assert told == {"saturated", "beyond_limits"}
 
 
 def test_an_input_at_its_limit_in_one_stretch_is_told_from_when_to_when() -> None:
