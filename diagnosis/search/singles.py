@@ -96,11 +96,14 @@ def under_noise(case: Case, usual: Alone) -> dict[frozenset[str], FittedHypothes
     """Single effects begun anew under the noise with a memory that the likeliest of them leaves, where then another one leads; else none.
 
     White noise alone says that the plant told all that is smooth: it bends parameters, and prefers names that smooth. Those are asked that
-    promise a fair share of the most there.
+    promise a fair share of the most there. Noise worth a negligible share of what the likeliest explains bends nothing.
     """
-    best = best_of(usual.found) if usual.found else None
-    noisy = None if best is None else with_own_noise(case, best)
-    if best is None or noisy is None or noisy.evidence < best.evidence + decisions.PLAIN_TO_SEE:
+    if not usual.found:
+        return {}
+    best = best_of(usual.found)
+    noisy = with_own_noise(case, best)
+    told = max(decisions.PLAIN_TO_SEE, decisions.NEGLIGIBLE_SHARE * (best.evidence - usual.nominal.evidence))
+    if noisy is None or noisy.evidence < best.evidence + told:
         return {}
     plain = _plain_under(case, usual, noisy)
     begun = [] if plain is None else _begun_under(case, plain, [noisy], usual.worth)
